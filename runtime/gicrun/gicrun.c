@@ -62,7 +62,7 @@ static const char help[] =
     "      --vary NAME=LOW:HIGH:COUNT  of these: parameters, POINT.z, keys\n"
     "      --trace FILE   of --manoeuvre: what the vehicle did, as CSV\n"
     "      --report FILE  of --kc, --manoeuvre and --vary: a page of curves\n"
-    "      --compare FILE with --kc, --sheet, --manoeuvre: another beside it\n"
+    "      --compare FILE with --kc, --sheet, --manoeuvre: another beside it, or a scene\n"
     "      --integrator NAME  ab3, rk4, ros2, ros3, adams, rkck, auto, not the scene's\n"
     "      --tolerance NUMBER of these\n"
     "      --engine NAME  auto (default): generated code compiled in this process (tcc), in a\n"
@@ -270,9 +270,6 @@ static Asked read_command_line(int count, char **word)
         usage_fail("gicrun", "--trace goes with --manoeuvre", NULL);
     if (study->compare && !asked.sheet && !study->manoeuvre && !asked.kinematics)
         usage_fail("gicrun", "--compare goes with --kc, --sheet or --manoeuvre", NULL);
-    if (study->compare && asked.kinematics && (asked.report || asked.loads))
-        usage_fail("gicrun",
-                   "--kc --compare is a table at the position of set-up: it goes without --report and --loads", NULL);
     if (asked.loads && (asked.report || study->travel > 0))
         usage_fail("gicrun", "--loads is at the position of set-up: it goes without --travel and --report", NULL);
     if (asked.report && !path_ends(asked.report, ".html"))

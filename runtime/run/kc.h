@@ -307,6 +307,8 @@ const char *kc_compliance(const Kc *kc, const KcAxle *axle, KcLoad load, bool op
 /* All loads of all axles as CSV; those of an axle for people. */
 void kc_loads_csv(Pool *pool, const Kc *kc, const char *path);
 void kc_loads_print(Text *out, const Kc *kc, int axle);
+/* Those of all axles that have one, as numbers with names. */
+struct Sheet kc_loads_sheet(Pool *pool, const Model *model, const Kc *kc);
 
 /* ---- kc_report.c: --kc */
 
@@ -337,15 +339,18 @@ const char *kc_shown_unit(const Kc *kc, const KcAxle *axle, int of_axle, double 
 bool kc_ratio_seen(const Kc *kc, const KcAxle *axle, const KcRow *row, int e);
 /* kc_compare.c: the numbers at the position of set-up. */
 struct Sheet kc_sheet(Pool *pool, const Model *model, const KcStudy *study);
-/* kc_compare.c: two vehicles at set-up side by side, as a table or as CSV. */
-void kc_compare(Pool *pool, const Model *model, const KcStudy *study, const Model *model_of_other,
-                const KcStudy *of_other, const Request *request);
+/* kc_compare.c: two vehicles side by side, at set-up as a table or as CSV, with their curves as a page. name: what the
+ * other one is called. */
+void kc_compare(Pool *pool, const Model *model, const KcStudy *study, const KcStudy *of_other, const char *name,
+                const Request *request);
 /* kc_page.c: what pages call a motion; the name of its abscissa and the factor to its unit. */
 extern const char *const kc_motion_title[KC_MOTIONS];
 const char *kc_abscissa(Pool *pool, const Kc *kc, const KcAxle *axle, KcMotion motion, double *scale);
 /* True: a page draws a quantity of wheels in a motion. Left out are the abscissa, what another curve shows as well, and
  * places, of which there are changes. */
 bool kc_is_drawn(int quantity, KcMotion motion);
+/* What stops each axle, for pages; who: of which vehicle, NULL: there is one. */
+void kc_stops_html(Text *out, const KcStudy *study, const char *who);
 /* The page `path`. */
 void kc_page(Pool *pool, const KcStudy *study, const char *path);
 

@@ -10,6 +10,7 @@
 #include "gic_runtime.h"
 #include "host/host.h"
 #include "run/kc.h"
+#include "run/sheet.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -272,4 +273,35 @@ void kc_loads_print(Text *out, const Kc *kc, int a)
                        kc_shown(pool, give[i].contact[0], 1e3 * unit), kc_shown(pool, give[i].contact[1], 1e3 * unit),
                        kc_shown(pool, give[i].contact[2], 1e3 * unit));
     }
+}
+
+Sheet kc_loads_sheet(Pool *pool, const Model *model, const Kc *kc)
+{
+    static const char *const column[] = {"toe", "camber", "contact_x", "contact_y", "contact_z"};
+    static const char *const title[] = {"toe", "camber", "contact x", "contact y", "contact z"};
+    enum { COLUMNS = sizeof column / sizeof *column, ANGLES = 2 };
+    Sheet sheet = {.pool = pool, .model = model};
+    for (int a = 0; a < kc->axles; ++a)
+        for (int k = 0; k < 2 * KC_LOADS; ++k) {
+            const KcAxle *axle = &kc->axle[a];
+            const char *by = pool_print(pool, "%s%s", kc_load_name[k / 2], k % 2 ? ".opposed" : "");
+            const char *unit = unit_of((KcLoad)(k / 2)), *section = k ? NULL : pool_print(pool, "Axle: %s", axle->name);
+            KcGive give[KC_WHEELS];
+            if (kc_compliance(kc, axle, (KcLoad)(k / 2), k % 2, give))
+                continue;
+            for (int i = 0; i < axle->wheels; ++i) {
+                const double number[COLUMNS] = {give[i].toe, give[i].camber, give[i].contact[0], give[i].contact[1],
+                                                give[i].contact[2]};
+                for (int c = 0; c < COLUMNS; ++c) {
+                    sheet_add(&sheet, section, pool_print(pool, "%s.%s.%s", axle->wheel[i].name, by, column[c]),
+                              pool_print(pool, "%s%s: %s, %s", kc_load_name[k / 2], k % 2 ? ", opposed" : "", title[c],
+                                         axle->wheel[i].name),
+                              pool_print(pool, strcmp(unit, "N") ? "%s/(%s)" : "%s/%s", c < ANGLES ? "rad" : "m", unit),
+                              number[c]);
+                    sheet_place(&sheet, axle, i, pool_print(pool, "%s.%s", by, column[c]));
+                    section = NULL;
+                }
+            }
+        }
+    return sheet;
 }

@@ -152,28 +152,39 @@ static void table(Page *page, Text *out, int a)
 
 /* ---- the page ------------------------------------------------------------------------------------------- */
 
+static void stop(Text *out, const char *who, const char *text)
+{
+    if (!text)
+        return;
+    text_print(out, "<p class=\"stop\">");
+    text_html(out, who ? pool_print(out->pool, "%s: %s", who, text) : text);
+    text_print(out, "</p>\n");
+}
+
+static void axle_stops(Text *out, const KcStudy *study, int a, const char *who)
+{
+    for (KcMotion m = 0; m < KC_MOTIONS; ++m)
+        for (int end = 0; end < 2; ++end)
+            stop(out, who, kc_stop(out->pool, study, a, m, end));
+}
+
+void kc_stops_html(Text *out, const KcStudy *study, const char *who)
+{
+    stop(out, who, study->kc->units);
+    for (int a = 0; a < study->kc->axles; ++a)
+        axle_stops(out, study, a, who);
+}
+
 static void write_axles(void *context, Text *out, int indent)
 {
     Page *page = context;
     (void)indent;
-    if (page->study->kc->units) {
-        text_print(out, "<p class=\"stop\">");
-        text_html(out, page->study->kc->units);
-        text_print(out, "</p>\n");
-    }
+    stop(out, NULL, page->study->kc->units);
     for (int a = 0; a < page->study->kc->axles; ++a) {
         const KcAxle *axle = &page->study->kc->axle[a];
         text_print(out, "<h2>%s</h2>\n",
                    strcmp(axle->name, "axle") ? pool_print(page->pool, "Axle: %s", axle->name) : "Axle");
-        for (KcMotion m = 0; m < KC_MOTIONS; ++m)
-            for (int end = 0; end < 2; ++end) {
-                const char *text = kc_stop(page->pool, page->study, a, m, end);
-                if (!text)
-                    continue;
-                text_print(out, "<p class=\"stop\">");
-                text_html(out, text);
-                text_print(out, "</p>\n");
-            }
+        axle_stops(out, page->study, a, NULL);
         if (kc_first(page->study, a))
             table(page, out, a);
         for (KcMotion m = 0; m < KC_MOTIONS; ++m)

@@ -5,8 +5,8 @@
 #include "base/text.h"
 #include "gic_runtime.h"
 #include "host/host.h"
-#include "read/read.h"
 #include "run/kc.h"
+#include "run/sheet.h"
 
 #include <math.h>
 #include <string.h>
@@ -246,6 +246,19 @@ static void report_loads(Pool *pool, const Model *model, const Scene *scene, con
     if (!gives)
         diag_fail((Place){model->source, 0, 0}, "write what holds it as springs between points or along coordinates",
                   "no axle of model '%s' has a compliance: %s: %s", model->name, kc->axle[0].name, first);
+    if (request->compare) {
+        const char *name;
+        const Model *model_of_other = sheet_other(pool, model, request->compare, &name);
+        Sheet sheet = kc_loads_sheet(pool, model, kc);
+        const Sheet other =
+            kc_loads_sheet(pool, model_of_other, kc_open(pool, model_of_other, NULL, request->solve, request->axle));
+        sheet_compare(&sheet, &other, name);
+        if (request->results)
+            sheet_csv(&sheet, request->results);
+        else
+            sheet_print(&sheet, ": compliance, models/KC.md defines it");
+        return;
+    }
     if (request->results) {
         kc_loads_csv(pool, kc, request->results);
         return;
@@ -274,11 +287,12 @@ void kc_report(Pool *pool, const Model *model, const Scene *scene, const Request
                   "no axle of model '%s' can be moved: %s: %s", model->name, study.kc->axle[0].name,
                   study.refusal[0][KC_PARALLEL]);
     if (request->compare) {
-        const Model *model_of_other = model_read(pool, request->compare);
+        const char *name;
+        const Model *model_of_other = sheet_other(pool, model, request->compare, &name);
         const KcStudy other = kc_study(pool, model_of_other, NULL, request);
         note_units(pool, &study, request);
         note_units(pool, &other, request);
-        kc_compare(pool, model, &study, model_of_other, &other, request);
+        kc_compare(pool, model, &study, &other, name, request);
         return;
     }
     if (request->results)

@@ -321,8 +321,9 @@ void manoeuvre_report(Pool *pool, const Model *model, const Request *request)
     const ManoeuvreKind *kind = kind_of(pool, request->manoeuvre);
     Manoeuvre m = manoeuvre_drive(pool, model, request);
     if (request->compare) {
-        const Manoeuvre other = manoeuvre_drive(pool, model_read(pool, request->compare), request);
-        sheet_compare(m.result, other.result);
+        const char *name;
+        const Manoeuvre other = manoeuvre_drive(pool, sheet_other(pool, model, request->compare, &name), request);
+        sheet_compare(m.result, other.result, name);
         engine_close(other.car->engine);
     }
     if (request->trace)

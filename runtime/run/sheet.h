@@ -19,6 +19,7 @@ typedef struct SheetRow {
     const char *unit, *shown; /* "rad", "deg" */
     double scale, value;      /* scale: from unit to shown */
     double other;             /* of the vehicle to compare with; NAN: it has no such number */
+    const char *place;        /* what other vehicles call it: front.left.camber; NULL: as its name */
 } SheetRow;
 
 typedef struct Sheet {
@@ -41,6 +42,8 @@ typedef struct Sheet {
 void sheet_add(Sheet *sheet, const char *section, const char *name, const char *title, const char *unit, double value);
 /* A way in m, which nobody reads in mm. */
 void sheet_add_way(Sheet *sheet, const char *section, const char *name, const char *title, double value);
+/* What the number added last is called in any vehicle: of a wheel of an axle, what follows. */
+void sheet_place(Sheet *sheet, const KcAxle *axle, int wheel, const char *what);
 void sheet_note(Sheet *sheet, const char *note);
 /* The same: what is not there, and why. */
 void sheet_miss(Sheet *sheet, const char *what);
@@ -74,14 +77,18 @@ bool sheet_motion_at(const SheetMotion *motion, double omega, double *re, double
 Sheet sheet_study(Pool *pool, const Model *model, const Scene *scene, const Request *request);
 /* sheet_report.c: --sheet: a table, or CSV or a page by the ending of the file. */
 void sheet_report(Pool *pool, const Model *model, const Scene *scene, const Request *request);
-/* The numbers of another one beside those of the same names; the numbers for people, the title after the names, and as
- * CSV. */
-void sheet_compare(Sheet *sheet, const Sheet *other);
+/* sheet_compare.c: what is to stand beside a model: another one's file, or a scene, which has other values of its
+ * parameters. *name: what it is called. */
+const Model *sheet_other(Pool *pool, const Model *model, const char *file, const char **name);
+/* The same file: numbers of another one, which is called `name`, beside those of the same places or names; then those
+ * that only the other one has. */
+void sheet_compare(Sheet *sheet, const Sheet *other, const char *name);
+/* The numbers for people, the title after the names, and as CSV. */
 void sheet_print(const Sheet *sheet, const char *title);
 /* Its notes, after the numbers for people, or on standard error where these go to a file. */
 void sheet_notes(const Sheet *sheet, const Request *request);
 void sheet_csv(const Sheet *sheet, const char *path);
-/* True if a number is another one for the other vehicle, or not there: by more than rounding. */
+/* sheet_compare.c: true if a number is another one for the other vehicle, or not there: by more than rounding. */
 bool sheet_differs(const SheetRow *row);
 /* sheet_shapes.c: a mode's motion as seen from the side and from behind, as SVG; nothing where it can't be found. */
 void sheet_shape(const Sheet *sheet, const Mode *mode, Text *out);

@@ -23,11 +23,15 @@ static const struct {
                {"m", "mm", 1e3},
                {"1/m", "1/km", 1e3},
                {"N/m", "N/mm", 1e-3},
-               {"N m/rad", "N m/deg", 0.017453292519943295}};
+               {"N m/rad", "N m/deg", 0.017453292519943295},
+               {"rad/N", "deg/kN", 57295.77951308232},
+               {"m/N", "mm/kN", 1e6},
+               {"rad/(N m)", "deg/kN m", 57295.77951308232},
+               {"m/(N m)", "mm/kN m", 1e6}};
 
 void sheet_add(Sheet *sheet, const char *section, const char *name, const char *title, const char *unit, double value)
 {
-    SheetRow row = {section, name, title, unit, unit, 1, value + 0.0, NAN};
+    SheetRow row = {section, name, title, unit, unit, 1, value + 0.0, NAN, NULL};
     for (size_t i = 0; i < sizeof of_unit / sizeof *of_unit; ++i)
         if (!strcmp(unit, of_unit[i].unit)) {
             row.shown = of_unit[i].shown;
@@ -38,7 +42,8 @@ void sheet_add(Sheet *sheet, const char *section, const char *name, const char *
 
 void sheet_add_way(Sheet *sheet, const char *section, const char *name, const char *title, double value)
 {
-    *POOL_PUSH(sheet->pool, sheet->row, sheet->rows) = (SheetRow){section, name, title, "m", "m", 1, value + 0.0, NAN};
+    *POOL_PUSH(sheet->pool, sheet->row, sheet->rows) =
+        (SheetRow){section, name, title, "m", "m", 1, value + 0.0, NAN, NULL};
 }
 
 void sheet_note(Sheet *sheet, const char *note)
@@ -105,7 +110,10 @@ void sheet_csv(const Sheet *sheet, const char *path)
     csv_end_row(&csv);
     for (int i = 0; i < sheet->rows; ++i) {
         csv_name(&csv, sheet->row[i].name, NULL);
-        csv_number(&csv, sheet->row[i].value);
+        if (isnan(sheet->row[i].value)) /* only the other one has it */
+            csv_text(&csv, NULL);
+        else
+            csv_number(&csv, sheet->row[i].value);
         csv_name(&csv, sheet->row[i].unit, NULL);
         if (sheet->other && isnan(sheet->row[i].other)) {
             csv_text(&csv, NULL);
@@ -201,27 +209,13 @@ Sheet sheet_study(Pool *pool, const Model *model, const Scene *scene, const Requ
     return sheet;
 }
 
-bool sheet_differs(const SheetRow *row)
-{
-    return row->other != row->value && !(fabs(row->other - row->value) <= 1e-9 * fmax(1, fabs(row->value)));
-}
-
-/* Numbers of another vehicle beside those of the same name. */
-void sheet_compare(Sheet *sheet, const Sheet *other)
-{
-    sheet->other = other->model->name;
-    for (int i = 0; i < sheet->rows; ++i)
-        for (int k = 0; k < other->rows; ++k)
-            if (!strcmp(sheet->row[i].name, other->row[k].name))
-                sheet->row[i].other = other->row[k].value;
-}
-
 void sheet_report(Pool *pool, const Model *model, const Scene *scene, const Request *request)
 {
     Sheet sheet = sheet_study(pool, model, scene, request);
     if (request->compare) {
-        const Sheet other = sheet_study(pool, model_read(pool, request->compare), NULL, request);
-        sheet_compare(&sheet, &other);
+        const char *name;
+        const Sheet other = sheet_study(pool, sheet_other(pool, model, request->compare, &name), NULL, request);
+        sheet_compare(&sheet, &other, name);
     }
     if (request->results && path_ends(request->results, ".html"))
         sheet_page(&sheet, request->results);

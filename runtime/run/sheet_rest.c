@@ -131,8 +131,10 @@ static void loads(Sheet *sheet, const double *pose, const Carried *c)
             sum += of[0];
             sheet_add(sheet, NULL, pool_print(sheet->pool, "%s.load", wheel->name),
                       pool_print(sheet->pool, "Load of %s", wheel->name), "N", of[0]);
+            sheet_place(sheet, axle, i, "load");
             sheet_add(sheet, NULL, pool_print(sheet->pool, "%s.deflection", wheel->name),
                       pool_print(sheet->pool, "Deflection of %s", wheel->name), "m", of[1]);
+            sheet_place(sheet, axle, i, "deflection");
             const char *faded = equilibrium_faded(sheet->pool, found, output, wheel_index(sheet, wheel));
             if (faded)
                 sheet_note(sheet, faded);
@@ -192,6 +194,7 @@ static void add_axle(Sheet *sheet, const KcAxle *axle)
                 sheet_add(sheet, section, pool_print(sheet->pool, "%s.%s", axle->wheel[i].name, q->name),
                           pool_print(sheet->pool, "%s, %s", q->title, axle->wheel[i].name), q->unit,
                           row.wheel[i][of_wheel[k]]);
+                sheet_place(sheet, axle, i, q->name);
                 section = NULL;
             }
 }

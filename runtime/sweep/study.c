@@ -94,6 +94,7 @@ static void keep_rows(Pool *pool, const Sheet *sheet, StudyRun *run)
         run->row[i].title = pool_print(pool, "%s", row->title);
         run->row[i].unit = pool_print(pool, "%s", row->unit);
         run->row[i].shown = pool_print(pool, "%s", row->shown);
+        run->row[i].place = NULL;
     }
 }
 

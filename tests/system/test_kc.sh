@@ -135,8 +135,38 @@ printf '%s\n' 'gicgen: 1' 'model: loose' 'base: car' 'bodies:' '  car: {mass: 9,
     'wheels:' '  wheel: {body: hub, center: [0, 0, 0.3], radius: 0.3, stiffness: 1000}' >"$work/loose.veh"
 run --kc --loads "$work/loose.veh"
 check 'what nothing holds under a vertical load is told' prints 'vertical: nothing holds a coordinate'
-run --kc --compare "$models/five_link.veh" "$models/hmmwv.veh" --report "$work/x.html"
-check '--compare is a table' exits 2
+# two that call their wheels differently, two settings of one, compliance; the page
+column() { awk -F, -v want="$2" 'NR == 1 {for (i = 1; i <= NF; ++i) {split($i, h, " "); if (h[1] == want) c = i}}
+    NR > 1 && $2 == "parallel" && $3 ^ 2 < 1e-24 {print $c; exit}' "$1"; }
+compared() { awk -F, -v want="$2" -v c="$3" '$1 == want {print $c}' "$1"; }
+same() { [ -n "$1" ] && [ "$1" = "$2" ]; }
+run --kc --axle front --compare "$models/hmmwv.veh" "$models/formula_student.veh" -o "$work/two.csv" --report "$work/two.html"
+check 'wheels of other names' exits 0
+run --kc --axle front "$models/hmmwv.veh" -q -o "$work/b.csv"
+run --kc --axle front "$models/formula_student.veh" -q -o "$work/a.csv"
+for name in camber_rate caster scrub_radius wheel_rate; do
+    check "$name of this one" same "$(compared "$work/two.csv" front_tire_r.$name 2)" "$(column "$work/a.csv" front_tire_r.$name)"
+    check "$name of the other" same "$(compared "$work/two.csv" front_tire_r.$name 4)" "$(column "$work/b.csv" tire_f_r.$name)"
+done
+check 'what only the other has' grep -q '^tire_f_l.ratio.spring_f_l,,1,-' "$work/two.csv"
+check 'the page has both' sh -c "grep -q 'class=\"differs\"' '$work/two.html' && grep -q 'formula_student and hmmwv' '$work/two.html'"
+check 'both are drawn' [ "$(grep -c '<polyline.*dasharray' "$work/two.html")" -gt 40 ]
+check 'with numbers alone' sh -c "! grep -qiE '[^a-z](nan|inf)[^a-z]' '$work/two.html'"
+printf '%s\n' 'gicscene: 1' 'duration: 1' 'step: 0.001' 'parameters: {bar_front: 0}' >"$work/soft.scene"
+run --kc --axle front --compare "$work/soft.scene" "$models/formula_student.veh" -o "$work/two.csv"
+check 'two settings' exits 0
+run --kc --axle front "$models/formula_student.veh" "$work/soft.scene" -q -o "$work/b.csv"
+check 'roll rate of this one' same "$(compared "$work/two.csv" front.roll_rate 2)" "$(column "$work/a.csv" roll_rate)"
+check 'roll rate of the other' same "$(compared "$work/two.csv" front.roll_rate 4)" "$(column "$work/b.csv" roll_rate)"
+run --kc --axle front --compare "$work/soft.scene" "$models/formula_student.veh"
+check 'its name' prints 'formula_student and formula_student with soft.scene'
+check 'the roll rate alone differs' [ "$(grep '\*$' "$work/out" | grep -vc 'Roll rate')" -eq 0 ]
+run --kc --loads --axle rear --compare "$models/hmmwv.veh" "$models/hatchback.veh" -o "$work/two.csv"
+run --kc --loads --axle rear "$models/hatchback.veh" -o "$work/a.csv"
+check 'compliance of two' same "$(compared "$work/two.csv" rear_l.lateral.opposed.contact_x 2)" \
+    "$(awk -F, '$2 == "lateral" && $3 == 1 && $4 == "rear_l" {print $10}' "$work/a.csv")"
+run --kc --loads --axle rear --compare "$models/hatchback.veh" "$models/hatchback.veh"
+check 'compliance beside itself' sh -c "grep -q 'lateral, opposed: toe' '$work/out' && ! grep -q '\*$' '$work/out'"
 
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ] && [ "$passed" -ge 58 ]

@@ -1,0 +1,86 @@
+/* SPDX-License-Identifier: MIT
+ * Two vehicles, or two settings of one, side by side (--compare): numbers of wheels stand beside those of the same
+ * place, all others beside those of the same name. */
+#include "base/file.h"
+#include "base/text.h"
+#include "read/read.h"
+#include "run/sheet.h"
+#include "scene/scene.h"
+
+#include <math.h>
+#include <string.h>
+
+/* The file's name without folders. */
+static const char *last_of(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
+const Model *sheet_other(Pool *pool, const Model *model, const char *file, const char **name)
+{
+    const Model *other;
+    if (!path_ends(file, ".scene")) {
+        other = model_read(pool, file);
+        *name = other->name;
+        return other;
+    }
+    other = model_read_again(pool, model); /* not as another scene has set it */
+    const Scene *scene = scene_read(pool, file, other, NULL, 0);
+    FileNumber *setting = pool_alloc(pool, ((size_t)other->parameters + 1) * sizeof *setting);
+    int settings = 0;
+    for (int i = 0; i < other->parameters; ++i)
+        if (other->parameter[i].tunable)
+            setting[settings++] = (FileNumber){other->parameter[i].name, scene->parameter[other->parameter[i].index]};
+    *name = pool_print(pool, "%s with %s", other->name, last_of(file));
+    return model_read_set(pool, other, setting, settings);
+}
+
+void sheet_place(Sheet *sheet, const KcAxle *axle, int wheel, const char *what)
+{
+    int number = 1;
+    for (int i = 0; i < wheel; ++i)
+        number += axle->wheel[i].side == axle->wheel[wheel].side;
+    sheet->row[sheet->rows - 1].place = pool_print(sheet->pool, "%s.%s_%d.%s", axle->name,
+                                                   axle->wheel[wheel].side > 0 ? "left" : "right", number, what);
+}
+
+bool sheet_differs(const SheetRow *row)
+{
+    return row->other != row->value && !(fabs(row->other - row->value) <= 1e-9 * fmax(1 / row->scale, fabs(row->value)));
+}
+
+static bool is_same(const SheetRow *a, const SheetRow *b)
+{
+    return !strcmp(a->unit, b->unit) &&
+           (a->place && b->place ? !strcmp(a->place, b->place) : !strcmp(a->name, b->name));
+}
+
+static const SheetRow *beside(const Sheet *sheet, int rows, const SheetRow *row)
+{
+    for (int i = 0; i < rows; ++i)
+        if (is_same(&sheet->row[i], row))
+            return &sheet->row[i];
+    return NULL;
+}
+
+void sheet_compare(Sheet *sheet, const Sheet *other, const char *name)
+{
+    const int own = sheet->rows;
+    const char *section = pool_print(sheet->pool, "Only %s has", name);
+    sheet->other = name;
+    for (int i = 0; i < own; ++i) {
+        const SheetRow *row = beside(other, other->rows, &sheet->row[i]);
+        sheet->row[i].other = row ? row->value : NAN;
+    }
+    for (int k = 0; k < other->rows; ++k) {
+        SheetRow row = other->row[k];
+        if (beside(sheet, own, &row))
+            continue;
+        row.section = section;
+        row.other = row.value;
+        row.value = NAN;
+        *POOL_PUSH(sheet->pool, sheet->row, sheet->rows) = row;
+        section = NULL;
+    }
+}
