@@ -37,6 +37,7 @@ for axle in "$models/hmmwv.veh front" "$models/hmmwv14.veh front" "$models/hmmwv
     check "the independent solution of $axle" python "$root/tests/vehicle/kinematics.py" "$gicgen" "$gicrun" $axle
 done
 check 'axles on rubber, and a trailer' python "$root/tests/vehicle/rubber_and_units.py" "$gicrun" "$work"
+check 'corners from their hard points, by scipy' python "$root/tests/vehicle/corners.py" "$gicrun" "$models"
 check 'planar axles by hand' python "$root/tests/vehicle/planar_axles.py" "$gicrun" "$work"
 
 check 'compliance by an independent solution, in closed form and mutual' python "$root/tests/vehicle/compliance.py" "$gicgen" \
@@ -169,4 +170,4 @@ run --kc --loads --axle rear --compare "$models/hatchback.veh" "$models/hatchbac
 check 'compliance beside itself' sh -c "grep -q 'lateral, opposed: toe' '$work/out' && ! grep -q '\*$' '$work/out'"
 
 echo "$passed passed, $failed failed"
-[ "$failed" -eq 0 ] && [ "$passed" -ge 58 ]
+[ "$failed" -eq 0 ] && [ "$passed" -ge 80 ]
