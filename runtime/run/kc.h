@@ -81,9 +81,10 @@ typedef struct Kc {
     double *f, *df, *dout; /* work */
 } Kc;
 
-/* axle: name or number of the one that is asked for, NULL: all. scene: its parameters are those of set-up; NULL: the
- * model's. Ends in diag_fail where the model has no wheels, or no such axle. */
-Kc *kc_open(Pool *pool, const Model *model, const Scene *scene, Solve solve, const char *axle);
+/* join: dual wheels are one wheel in the middle of them. axle: name or number of the one that is asked for, NULL: all.
+ * scene: its parameters are those of set-up; NULL: the model's. Ends in diag_fail where the model has no wheels, or no
+ * such axle. */
+Kc *kc_open(Pool *pool, const Model *model, const Scene *scene, Solve solve, const char *axle, bool join);
 
 /* Warn once, where wheel rates are computed, of bushings that they leave out. */
 void kc_warn(const Kc *kc);

@@ -108,16 +108,20 @@ static void axis_of(const Model *model, const Wheel *wheel, double axis[3])
         axis[i] = world[1] < 0 ? -wheel->axis[i] : wheel->axis[i];
 }
 
+static double radius_of(const Model *model, const Wheel *wheel)
+{
+    return wheel->tire >= 0 ? model->tire[wheel->tire].radius : wheel->radius;
+}
+
 static KcWheel watch_wheel(Kc *kc, Model *model, const Wheel *wheel)
 {
     double axis[3], tip[3];
     axis_of(model, wheel, axis);
     add3(wheel->center, axis, tip);
-    const double radius = wheel->tire >= 0 ? model->tire[wheel->tire].radius : wheel->radius;
     return (KcWheel){
         .wheel = wheel,
         .name = wheel->name,
-        .radius = radius,
+        .radius = radius_of(model, wheel),
         .shaft = wheel->tire < 0 || wheel->drive_body != wheel->body,
         .centre = watch_point(kc->pool, model, OUTPUT_POSITION, wheel->body, wheel->center),
         .velocity = watch_point(kc->pool, model, OUTPUT_VELOCITY, wheel->body, wheel->center),
@@ -131,6 +135,7 @@ static KcWheel watch_wheel(Kc *kc, Model *model, const Wheel *wheel)
 typedef struct Placed {
     double x, y;
     int index;
+    const Wheel *wheel; /* NULL: joined to another one */
 } Placed;
 
 static int by_x(const void *a, const void *b)
@@ -141,8 +146,51 @@ static int by_x(const void *a, const void *b)
     return p->index - q->index;
 }
 
-/* Wheels from the foremost back; one that is less than its radius behind the first of an axle belongs to it. */
-static void find_axles(Kc *kc, Model *model)
+/* Do two wheels turn about one line on one body, with one radius, on one side? */
+static bool is_twin(const Model *model, const Placed *a, const Placed *b)
+{
+    const Wheel *one = &model->wheel[a->index], *other = &model->wheel[b->index];
+    double first[3], second[3], line[3], across[3];
+    if (one->body != other->body || (a->y < 0) != (b->y < 0) || radius_of(model, one) != radius_of(model, other))
+        return false;
+    axis_of(model, one, first);
+    axis_of(model, other, second);
+    sub3(other->center, one->center, line);
+    cross3(first, second, across);
+    const double turned = norm3(across);
+    cross3(first, line, across);
+    return turned < nothing && norm3(across) < nothing * radius_of(model, one);
+}
+
+/* Dual wheels become one in the middle of them, where the first of them was. Returns the number that is left. */
+static int join_twins(Kc *kc, const Model *model, Placed *placed)
+{
+    int left = 0;
+    for (int i = 0; i < model->wheels; ++i) {
+        int twins = 1;
+        Wheel *joined = pool_alloc(kc->pool, sizeof *joined);
+        if (!placed[i].wheel)
+            continue;
+        *joined = *placed[i].wheel;
+        for (int j = i + 1; j < model->wheels; ++j) {
+            if (!placed[j].wheel || !is_twin(model, &placed[i], &placed[j]))
+                continue;
+            add3(joined->center, placed[j].wheel->center, joined->center);
+            joined->name = pool_print(kc->pool, "%s+%s", joined->name, placed[j].wheel->name);
+            placed[j].wheel = NULL;
+            ++twins;
+        }
+        for (int k = 0; k < 3; ++k)
+            joined->center[k] /= twins;
+        placed[left] = placed[i];
+        placed[left++].wheel = twins > 1 ? joined : placed[i].wheel;
+    }
+    return left;
+}
+
+/* Wheels from the foremost back; one that is less than its radius behind the first of an axle belongs to it. join:
+ * dual wheels are one. */
+static void find_axles(Kc *kc, Model *model, bool join)
 {
     Placed *placed = pool_alloc(kc->pool, ((size_t)model->wheels + 1) * sizeof *placed);
     for (int i = 0; i < model->wheels; ++i) {
@@ -150,12 +198,13 @@ static void find_axles(Kc *kc, Model *model)
         double A[9], at[3];
         mat_from_euler(body->euler, A);
         apply3(A, model->wheel[i].center, at);
-        placed[i] = (Placed){at[0] + body->position[0], at[1] + body->position[1], i};
+        placed[i] = (Placed){at[0] + body->position[0], at[1] + body->position[1], i, &model->wheel[i]};
     }
     qsort(placed, (size_t)model->wheels, sizeof *placed, by_x);
     double first = 0;
-    for (int i = 0; i < model->wheels; ++i) {
-        KcWheel wheel = watch_wheel(kc, model, &model->wheel[placed[i].index]);
+    const int wheels = join ? join_twins(kc, model, placed) : model->wheels;
+    for (int i = 0; i < wheels; ++i) {
+        KcWheel wheel = watch_wheel(kc, model, placed[i].wheel);
         wheel.side = placed[i].y < 0 ? -1 : 1;
         KcAxle *axle = kc->axles ? &kc->axle[kc->axles - 1] : NULL;
         if (!axle || first - placed[i].x >= wheel.radius || axle->wheels == KC_WHEELS) {
@@ -494,7 +543,7 @@ void kc_warn(const Kc *kc)
                   kc->rubbers > 1 ? "are" : "is");
 }
 
-Kc *kc_open(Pool *pool, const Model *model, const Scene *scene, Solve solve, const char *axle)
+Kc *kc_open(Pool *pool, const Model *model, const Scene *scene, Solve solve, const char *axle, bool join)
 {
     Kc *kc = pool_alloc(pool, sizeof *kc);
     Model *copy = pool_alloc(pool, sizeof *copy);
@@ -508,7 +557,7 @@ Kc *kc_open(Pool *pool, const Model *model, const Scene *scene, Solve solve, con
     if (!model->wheels)
         diag_fail((Place){model->source, 0, 0}, "give it `wheels`", "model '%s' has no wheels, and so no axles",
                   model->name);
-    find_axles(kc, copy);
+    find_axles(kc, copy, join);
     for (int i = 0; i < model->forces; ++i)
         add_element(kc, copy, &model->force[i], i);
     kc->outputs = copy->output_components;

@@ -13,7 +13,7 @@
 
 KcStudy kc_study(Pool *pool, const Model *model, const Scene *scene, const Request *request)
 {
-    const Kc *kc = kc_open(pool, model, scene, request->solve, request->axle);
+    const Kc *kc = kc_open(pool, model, scene, request->solve, request->axle, true);
     KcStudy study = {.kc = kc, .travel = request->travel > 0 ? request->travel : kc_usual_travel};
     kc_warn(kc);
     study.curve = pool_alloc(pool, (size_t)kc->axles * sizeof *study.curve);
@@ -234,7 +234,7 @@ static void note_units(Pool *pool, const KcStudy *study, const Request *request)
 /* --loads: compliance alone. */
 static void report_loads(Pool *pool, const Model *model, const Scene *scene, const Request *request)
 {
-    const Kc *kc = kc_open(pool, model, scene, request->solve, request->axle);
+    const Kc *kc = kc_open(pool, model, scene, request->solve, request->axle, true);
     const char *why = NULL, *first = NULL;
     bool gives = false;
     for (int a = 0; a < kc->axles; ++a) {
@@ -250,8 +250,8 @@ static void report_loads(Pool *pool, const Model *model, const Scene *scene, con
         const char *name;
         const Model *model_of_other = sheet_other(pool, model, request->compare, &name);
         Sheet sheet = kc_loads_sheet(pool, model, kc);
-        const Sheet other =
-            kc_loads_sheet(pool, model_of_other, kc_open(pool, model_of_other, NULL, request->solve, request->axle));
+        const Sheet other = kc_loads_sheet(pool, model_of_other,
+                                           kc_open(pool, model_of_other, NULL, request->solve, request->axle, true));
         sheet_compare(&sheet, &other, name);
         if (request->results)
             sheet_csv(&sheet, request->results);

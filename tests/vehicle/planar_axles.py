@@ -168,6 +168,16 @@ def main():
     check("tuned hard points", len(a) == len(b) and all(near(float(x[k] or 0), float(y[k] or 0), 1e-9)
                                                         for x, y in zip(a, b) for k in x if k[0] not in "am"))
 
+    # dual wheels are one wheel in the middle of them
+    twins = WISHBONES.replace("center: [0, 0.75, 0.3]", "center: [0, 0.6, 0.3]")
+    twins += "  twin_l: {body: hub_l, center: [0, 0.9, 0.3], radius: 0.3, stiffness: 200000}\n"
+    a = study(gicrun, work, "single", WISHBONES % {**level, "ucz": 0.35, "parameters": ""})
+    b = study(gicrun, work, "twins", twins % {**level, "ucz": 0.35, "parameters": ""})
+    for x, y in zip(a, b):
+        check("dual wheels", len(x) == len(y) and all(near(float(x[k]), float(y[k.replace("tire_l", "tire_l+twin_l").replace("tire_r", "tire_r+twin_r")]))
+                                                      for k in x if x[k] and k not in ("axle", "motion")))
+    check("rows of dual wheels", len(a) == len(b) > 80)
+
     # a sliding pillar: travel is the coordinate, and stops where its range ends
     pillar = WISHBONES[: WISHBONES.index("points:")] % {"parameters": ""}
     pillar = "\n".join(x for x in pillar.splitlines() if "arm_l" not in x) + """
