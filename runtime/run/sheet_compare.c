@@ -47,7 +47,8 @@ void sheet_place(Sheet *sheet, const KcAxle *axle, int wheel, const char *what)
 
 bool sheet_differs(const SheetRow *row)
 {
-    return row->other != row->value && !(fabs(row->other - row->value) <= 1e-9 * fmax(1 / row->scale, fabs(row->value)));
+    return row->other != row->value &&
+           !(fabs(row->other - row->value) <= 1e-9 * fmax(1 / row->scale, fabs(row->value)));
 }
 
 static bool is_same(const SheetRow *a, const SheetRow *b)

@@ -146,8 +146,8 @@ check 'wheels of other names' exits 0
 run --kc --axle front "$models/hmmwv.veh" -q -o "$work/b.csv"
 run --kc --axle front "$models/formula_student.veh" -q -o "$work/a.csv"
 for quantity in camber_rate caster scrub_radius wheel_rate; do
-    check "$quantity of this one" same "$(compared "$work/two.csv" front_tire_r.$quantity 2)" "$(column "$work/a.csv" front_tire_r.$quantity)"
-    check "$quantity of the other" same "$(compared "$work/two.csv" front_tire_r.$quantity 4)" "$(column "$work/b.csv" tire_f_r.$quantity)"
+    check "$quantity of this one" same "$(compared "$work/two.csv" "front_tire_r.$quantity" 2)" "$(column "$work/a.csv" "front_tire_r.$quantity")"
+    check "$quantity of the other" same "$(compared "$work/two.csv" "front_tire_r.$quantity" 4)" "$(column "$work/b.csv" "tire_f_r.$quantity")"
 done
 check 'what only the other has' grep -q '^tire_f_l.ratio.spring_f_l,,1,-' "$work/two.csv"
 check 'the page has both' sh -c "grep -q 'class=\"differs\"' '$work/two.html' && grep -q 'formula_student and hmmwv' '$work/two.html'"
