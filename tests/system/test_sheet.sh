@@ -98,8 +98,15 @@ run --sheet --compare "$models/hmmwv.veh" "$models/hmmwv.veh"
 check 'a vehicle beside itself' sh -c "! grep -q '\*$' '$work/out'"
 run --sheet --compare "$models/five_link.veh" "$models/hmmwv.veh"
 check 'what differs is marked' grep -q 'Mass  .*\*$' "$work/out"
+# two settings of one: the sheet with the scene has the other numbers
+printf '%s\n' 'gicscene: 1' 'duration: 1' 'step: 0.001' 'parameters: {bar_front: 0, bar_rear: 0}' >"$work/none.scene"
+run --sheet -q "$models/formula_student.veh" "$work/none.scene" -o "$work/other.csv"
+run --sheet -q --compare "$work/none.scene" "$models/formula_student.veh" -o "$work/both.csv"
+settings() { awk -F, 'NR == FNR {if (FNR > 1) other[$1] = $2; next} FNR > 1 && $1 != "top_speed" {n += ($1 in other)
+    d += other[$1] != $4; r += $1 ~ /roll_rate/ && $2 != $4} END {exit !(n > 50 && !d && r == 2)}' "$work/other.csv" "$work/both.csv"; }
+check 'two settings' settings
 run --compare "$models/hmmwv.veh" --modes "$models/hmmwv.veh"
 check '--compare without --sheet' exits 2
 
 echo "$passed passed, $failed failed"
-[ "$failed" -eq 0 ] && [ "$passed" -ge 33 ]
+[ "$failed" -eq 0 ] && [ "$passed" -ge 34 ]
