@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Models with a base that is held and coordinates that are driven, as on a test rig. */
+ * Models with a base that is held, coordinates that are driven and wheels on posts, as on a test rig. */
 #include "base/vec3.h"
 #include "model/model.h"
 #include "specialize/specialize.h"
@@ -54,4 +54,21 @@ const Model *model_drive(Pool *pool, const Model *model, const int *coordinate, 
                                                       .initial = k ? 0 : c->initial};
     }
     return driven;
+}
+
+const Model *model_post(Pool *pool, const Model *model, const int *wheel, int count)
+{
+    Model *posted = pool_alloc(pool, sizeof *posted);
+    const size_t wheels = sizeof *model->wheel * (size_t)model->wheels;
+    const size_t inputs = sizeof *model->input * (size_t)model->inputs;
+    *posted = *model;
+    posted->wheel = pool_grow(pool, model->wheel, wheels, wheels);
+    posted->input = pool_grow(pool, model->input, inputs, inputs + sizeof *model->input * (size_t)(2 * count));
+    for (int i = 0; i < count; ++i) {
+        Wheel *w = &posted->wheel[wheel[i]];
+        posted->input[posted->inputs++] = (Input){.name = pool_print(pool, "%s.post", w->name), .unit = "m"};
+        w->post = posted->inputs;
+        posted->input[posted->inputs++] = (Input){.name = pool_print(pool, "%s.post_rate", w->name), .unit = "m/s"};
+    }
+    return posted;
 }

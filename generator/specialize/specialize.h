@@ -20,6 +20,10 @@ const Model *model_hold(Pool *pool, const Model *model, const double position[3]
 /* The model with these free coordinates driven, by inputs that follow its own. */
 const Model *model_drive(Pool *pool, const Model *model, const int *coordinate, int count);
 
+/* The model with a post under each of these wheels: inputs that follow its own raise the road under it. Slopes do not
+ * change by that. */
+const Model *model_post(Pool *pool, const Model *model, const int *wheel, int count);
+
 /* ---- massless.c: light bodies without mass, an approximation; without a tuning */
 
 /* The model in which bodies of less than `below` kg have neither mass nor inertia. *names: their names as a text for

@@ -107,6 +107,11 @@ static Ex table_lookup(Whole *whole, int table, Ex x)
     return ex_op(dag, OP_TABLE, x, (Ex)table, 0);
 }
 
+Ex whole_post(const Whole *whole, const Wheel *wheel, int order)
+{
+    return wheel->post ? ex_input(whole->dag, element_at(ARRAY_u, wheel->post - 1 + order), NULL) : 0;
+}
+
 Ex whole_law(Whole *whole, const Law *law, const Ex *local)
 {
     Dag *dag = whole->dag;
@@ -406,6 +411,7 @@ static void add_rolling_wheel(Whole *whole, Loads *loads, int index)
     add_load(whole, loads, wheel->body, BODY_GROUND, wheel->center, grip + GRIP_FORCE, grip + GRIP_TORQUE);
     loads->power = ex_add(dag, loads->power, grip[GRIP_POWER]);
     memcpy(loads->wheel[index], grip + GRIP_LOAD, sizeof *loads->wheel);
+    loads->wheel[index][3] = ex_add(dag, loads->wheel[index][3], whole_post(whole, wheel, 0));
     loads->press[index] = grip[GRIP_PRESS];
     if (!wheel_is_driven(whole->model, index))
         return;
@@ -431,10 +437,12 @@ static void add_wheel(Whole *whole, Loads *loads, int index)
     Ex at[3], v[3], F[3];
     whole_position(whole, &center, at);
     whole_velocity(whole, &center, v);
-    Ex road = ex_op(dag, OP_ROAD, at[0], at[1], 0), h = ex_op(dag, OP_ROAD_PART, road, 0, 0);
+    Ex road = ex_op(dag, OP_ROAD, at[0], at[1], 0), under = ex_op(dag, OP_ROAD_PART, road, 0, 0);
+    Ex h = ex_add(dag, under, whole_post(whole, wheel, 0));
     Ex slope_x = ex_op(dag, OP_ROAD_PART, road, 1, 0), slope_y = ex_op(dag, OP_ROAD_PART, road, 2, 0);
     Ex deflection = ex_sub(dag, ex_add(dag, whole_number(whole, &wheel->radius), h), at[2]);
     Ex rate = ex_sub(dag, ex_add(dag, ex_mul(dag, slope_x, v[0]), ex_mul(dag, slope_y, v[1])), v[2]);
+    rate = ex_add(dag, rate, whole_post(whole, wheel, 1));
     Ex share = ex_div(dag, ex_literal(dag, 1), whole_number(whole, &wheel->fade));
     Ex s = ex_op(dag, OP_MAX, ex_mul(dag, share, deflection), 0, 0);
     Ex viscous = ex_mul(dag, ex_mul(dag, whole_number(whole, &wheel->damping), fade_in(dag, s)), rate);

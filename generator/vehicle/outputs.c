@@ -151,6 +151,7 @@ static void output_components(Whole *whole, const Output *output, Ex out[OUTPUT_
     case OUTPUT_CONTACT:
         for (int i = 0; i < 3; ++i)
             out[i] = whole_grip(whole, output->index, GRIP_POINT + i);
+        out[2] = ex_add(dag, out[2], whole_post(whole, &whole->model->wheel[output->index], 0));
         break;
     case OUTPUT_POWERTRAIN:
         for (int i = 0; i < output->count; ++i)

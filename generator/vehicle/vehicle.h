@@ -178,6 +178,8 @@ Loads *loads_make(Whole *whole);
 /* A formula as an expression; local: the values of its local names. The force elements that it reads are among the
  * loads already. */
 Ex whole_law(Whole *whole, const Law *law, const Ex *local);
+/* The height of the post under a wheel, order 0, or its rate, 1; 0 where there is none. */
+Ex whole_post(const Whole *whole, const Wheel *wheel, int order);
 
 /* ---- wheel.c, tire_*.c, powertrain.c: wheels with tires, models/TIRES.md, POWERTRAIN.md */
 

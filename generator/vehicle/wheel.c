@@ -422,6 +422,7 @@ Ex fast_law(Linking *l, const Law *law, const Ex *local)
     return whole_law(l->formulas, law, local);
 }
 
+/* Of a wheel on a post its place and velocity count from the post, which is the road to it. */
 static void link_wheel(Whole *whole, Block *block, const Wheel *wheel, int offset)
 {
     Dag *dag = whole->dag;
@@ -429,8 +430,10 @@ static void link_wheel(Whole *whole, Block *block, const Wheel *wheel, int offse
     Ex axis[3], turn[3], out[3];
     Vector center = whole_point(whole, wheel->body, wheel->center);
     whole_position(whole, &center, out);
+    out[2] = ex_sub(dag, out[2], whole_post(whole, wheel, 0));
     store3(block, out, ARRAY_link, offset + LINK_C);
     whole_velocity(whole, &center, out);
+    out[2] = ex_sub(dag, out[2], whole_post(whole, wheel, 1));
     store3(block, out, ARRAY_link, offset + LINK_V);
     for (int i = 0; i < 3; ++i)
         axis[i] = whole_number(whole, &wheel->axis[i]);

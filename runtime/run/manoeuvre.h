@@ -87,6 +87,7 @@ struct TestCar {
     const char *running; /* gear and engine speed then, as keys of `initial` */
     const char *remedy;  /* where it could not */
     double aside[3];     /* left straight ahead: m/s^2 to the left, rad leant to the left, at a speed, m/s */
+    const Request *request;
 };
 
 TestCar *car_open(Pool *pool, const Model *model, const Request *request);
@@ -102,6 +103,9 @@ const char *car_scene(TestCar *car, double duration, double speed, bool drives, 
 /* True: the vehicle runs straight ahead with the steering as it is set up, from a speed > 0 with free pedals. False: it
  * turns, *why and car->remedy. */
 bool car_runs_straight(TestCar *car, double speed, const char **why);
+/* Go on with an engine of the model on the posts of a scene; scenes afterwards have the same posts. Returns that model,
+ * with outputs of wheels, and the scene for it. */
+const Model *car_stand_on_posts(TestCar *car, const char *text, const Scene **scene);
 /* Drive straight ahead until the speed is kept, so that scenes at about this speed begin in the right gear. False: it
  * is not, or the vehicle does not run straight, *why and car->remedy. Without pedals it rolls straight ahead, at a
  * speed of 0 nothing is done. car_settle(): the same, which ends in car_refuse(). */
@@ -258,8 +262,14 @@ void manoeuvre_acceleration(Manoeuvre *manoeuvre);
 void manoeuvre_elasticity(Manoeuvre *manoeuvre);
 void manoeuvre_ride(Manoeuvre *manoeuvre);
 void manoeuvre_ride_speeds(Manoeuvre *manoeuvre);
+void manoeuvre_posts(Manoeuvre *manoeuvre);
 /* manoeuvre_straight.c: the speed, m/s, that does not grow any more by the whole accelerator; NAN: there is none, *why.
  */
 double manoeuvre_top_speed(TestCar *car, const char **why);
+
+/* manoeuvre_ride.c: s from the start of a run that are left out, and between rows; rows of accelerations and loads of a
+ * run, and the curve of a density. */
+extern const double ride_run_in, ride_sampling;
+void manoeuvre_ride_numbers(Manoeuvre *manoeuvre, const Trial *trial);
 
 #endif

@@ -82,11 +82,23 @@ static void find_steering(TestCar *car)
     }
 }
 
+static void open_engine(TestCar *car, const Model *model)
+{
+    const Request *request = car->request;
+    car->engine = engine_open(car->pool, request->engine, model,
+                              &(EngineOptions){.solve = request->solve,
+                                               .recovery = request->recovery,
+                                               .compiler = request->compiler,
+                                               .flags = request->flags,
+                                               .quiet = request->quiet});
+    car->code = car->engine->code;
+}
+
 TestCar *car_open(Pool *pool, const Model *model, const Request *request)
 {
     TestCar *car = pool_alloc(pool, sizeof *car);
     const double *e = model->body[BODY_BASE].euler;
-    *car = (TestCar){.pool = pool, .sheet = sheet_open(pool, model, NULL, request->solve)};
+    *car = (TestCar){.pool = pool, .request = request, .sheet = sheet_open(pool, model, NULL, request->solve)};
     car->model = model_watch_wheels(pool, model);
     find_loads(car);
     find_travel(car);
@@ -104,14 +116,18 @@ TestCar *car_open(Pool *pool, const Model *model, const Request *request)
     car->rest = rest_of(car);
     car->running = "";
     car->output_step = 0.01;
-    car->engine = engine_open(pool, request->engine, car->model,
-                              &(EngineOptions){.solve = request->solve,
-                                               .recovery = request->recovery,
-                                               .compiler = request->compiler,
-                                               .flags = request->flags,
-                                               .quiet = request->quiet});
-    car->code = car->engine->code;
+    open_engine(car, car->model);
     return car;
+}
+
+const Model *car_stand_on_posts(TestCar *car, const char *text, const Scene **scene)
+{
+    *scene = scene_read_text(car->pool, "the scene on posts", text, car->model);
+    const Model *posted = scene_rig(car->pool, car->model, scene);
+    engine_rest(car->engine);
+    engine_close(car->engine);
+    open_engine(car, posted);
+    return posted;
 }
 
 void car_refuse(const TestCar *car, const char *remedy, const char *what)

@@ -134,6 +134,15 @@ const ManoeuvreKind manoeuvre_kind[] = {
       {"class", "", "of the road by ISO 8608: 1 is A, 8 is H", 2, 1, 8},
       {"duration", "s", "that is evaluated", 30, 10, 600},
       {"seed", "", "of the road", 1, 0, 1e9}}},
+    {"four-post",
+     "On four posts",
+     manoeuvre_posts,
+     {{"speed", "m/s", "of the road that passes under it", 22.222222222222221, 1, 120},
+      {"class", "", "of the road by ISO 8608: 1 is A, 8 is H", 2, 1, 8},
+      {"duration", "s", "of the road", 30, 10, 600},
+      {"seed", "", "of the road", 1, 0, 1e9},
+      {"amplitude", "m", "of the posts in sweeps", 0.001, 1e-5, 0.1},
+      {"to", "Hz", "highest frequency of sweeps", 20, 2, 50}}},
     {0}};
 
 void manoeuvre_keep(Manoeuvre *manoeuvre, const Trial *trial)

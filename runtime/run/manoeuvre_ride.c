@@ -11,16 +11,15 @@
 #include <gsl/gsl_fft_real.h>
 
 static const double pi = 3.141592653589793;
-static const double run_in = 5;         /* s from the start, which are left out */
-static const double sampling = 0.005;   /* s */
 static const double band[] = {0.5, 80}; /* Hz, of weighted accelerations */
+const double ride_run_in = 5, ride_sampling = 0.005;
 
 /* ---- spectral density after Welch ------------------------------------------------------------------------ */
 
 /* Segments of SEGMENT samples, half over each other, each without its mean and under a Hann window. */
 enum { SEGMENT = 1024, LINES = SEGMENT / 2 };
 
-/* One-sided density of `count` samples, `sampling` apart, at k / (SEGMENT sampling) Hz for k from 0 to LINES - 1. */
+/* One-sided density of `count` samples, `ride_sampling` apart, at k / (SEGMENT ride_sampling) Hz for k from 0 to LINES - 1. */
 static void welch(int count, const double *sample, double density[LINES])
 {
     double power = 0;
@@ -40,13 +39,13 @@ static void welch(int count, const double *sample, double density[LINES])
             density[k] += 2 * (x[k] * x[k] + x[SEGMENT - k] * x[SEGMENT - k]);
     }
     for (int k = 0; k < LINES; ++k)
-        density[k] *= segments ? sampling / power / segments : 0;
+        density[k] *= segments ? ride_sampling / power / segments : 0;
 }
 
 /* Root of the sum of a density, weighted or not, over the band. */
 static double band_rms(const double density[LINES], const RideWeight *weight)
 {
-    const double apart = 1 / (SEGMENT * sampling);
+    const double apart = 1 / (SEGMENT * ride_sampling);
     double sum = 0;
     for (int k = 1; k < LINES; ++k) {
         const double f = k * apart, w = weight ? ride_weight(*weight, f) : 1;
@@ -61,7 +60,7 @@ static double band_rms(const double density[LINES], const RideWeight *weight)
 /* A curve of a density up to a frequency, in the logarithm of ten where people expect one. */
 static void add_curve(Manoeuvre *m, const double density[LINES], const char *title, const char *unit)
 {
-    const double most = 25, apart = 1 / (SEGMENT * sampling);
+    const double most = 25, apart = 1 / (SEGMENT * ride_sampling);
     const int rows = (int)(most / apart);
     double *x = pool_alloc(m->pool, (size_t)rows * sizeof *x), *y = pool_alloc(m->pool, (size_t)rows * sizeof *y);
     for (int k = 1; k <= rows; ++k) {
@@ -72,12 +71,12 @@ static void add_curve(Manoeuvre *m, const double density[LINES], const char *tit
         (ManoeuvreTable){pool_print(m->pool, "%s, log10 of the density", title), unit, "frequency, Hz", rows, 1, x, y};
 }
 
-/* A channel from run_in on. */
+/* A channel from ride_run_in on. */
 static int samples(const Trial *trial, Channel channel, double *out)
 {
     int n = 0;
     for (int i = 0; i < trial->rows; ++i)
-        if (trial->row[i][TRIAL_TIME] >= run_in)
+        if (trial->row[i][TRIAL_TIME] >= ride_run_in)
             out[n++] = trial->row[i][channel];
     return n;
 }
@@ -138,7 +137,7 @@ static void add_loads(Manoeuvre *m, const Trial *trial)
         double mean = 0, square = 0, road = 0, ground = 0, travel[2] = {INFINITY, -INFINITY};
         int n = 0, up = 0;
         for (int i = 0; i < trial->rows; ++i) {
-            if (trial->row[i][TRIAL_TIME] < run_in)
+            if (trial->row[i][TRIAL_TIME] < ride_run_in)
                 continue;
             const double *at = trial->wheel + (i * model->wheels + w) * TRIAL_OF_WHEEL;
             mean += at[TRIAL_WHEEL_LOAD];
@@ -168,12 +167,18 @@ static void add_loads(Manoeuvre *m, const Trial *trial)
     }
 }
 
+void manoeuvre_ride_numbers(Manoeuvre *m, const Trial *trial)
+{
+    add_accelerations(m, trial);
+    add_loads(m, trial);
+}
+
 /* At a speed that it keeps, on a road of a class from a seed. */
 static const Trial *drive(Manoeuvre *m, const char *name, double speed, int class, double duration, double seed)
 {
     TestCar *car = m->car;
     double aside[2];
-    duration += run_in;
+    duration += ride_run_in;
     sheet_axle_place(&car->sheet, &car->sheet.kc->axle[0], &aside[0]);
     Text more = {.pool = m->pool};
     text_print(&more,
@@ -186,7 +191,7 @@ static const Trial *drive(Manoeuvre *m, const char *name, double speed, int clas
                    "    wheelbase: %.17g\n",
                    ceil(speed * (duration + 10) + 100), car->model->input[car->steering].name, 1 / car->angle,
                    car->sheet.wheelbase);
-    car->output_step = sampling;
+    car->output_step = ride_sampling;
     const Trial *trial = trial_run(car, name, car_scene(car, duration, speed, false, more.s), NULL, NULL);
     manoeuvre_whole(m, trial, "a smoother road, class=1, or a lower speed");
     manoeuvre_keep(m, trial);
@@ -200,8 +205,7 @@ void manoeuvre_ride(Manoeuvre *m)
     car_need_brake(m->car);
     car_settle(m->car, m->value[0]);
     const Trial *trial = drive(m, "ride", m->value[0], (int)round(m->value[1]), m->value[2], m->value[3]);
-    add_accelerations(m, trial);
-    add_loads(m, trial);
+    manoeuvre_ride_numbers(m, trial);
     manoeuvre_draw(m, sizeof over / sizeof *over, over);
 }
 

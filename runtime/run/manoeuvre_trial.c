@@ -157,6 +157,7 @@ static int advance(Way *way, double end)
 Trial *trial_run(TestCar *car, const char *name, const char *text, TrialStop *stop, void *context)
 {
     const Scene *scene = scene_read_text(car->pool, pool_print(car->pool, "the scene of %s", name), text, car->model);
+    scene_rig(car->pool, car->model, &scene); /* its model is the engine's */
     const size_t numbers = (size_t)car->engine->standard_count + 1;
     Trial *trial = pool_alloc(car->pool, sizeof *trial);
     *trial = (Trial){.name = name, .scene = text, .state = pool_alloc(car->pool, numbers * sizeof(double))};

@@ -62,7 +62,7 @@ static void fix_inputs(Pool *pool, const Model *model, const Scene *scene, Facts
         const Profile *profile = &scene->profile[i];
         double at[3];
         profile_at(profile, 0, at);
-        for (int k = 0; k < (profile->driven ? 3 : 1); ++k) {
+        for (int k = 0; k < profile_orders(profile); ++k) {
             fixed[profile->input + k] = profile_is_constant(profile);
             value[profile->input + k] = at[k];
         }
@@ -182,6 +182,8 @@ static const char *asymmetry_of(const Model *model, const Scene *scene, bool acr
         return "the vehicle does not move straight ahead at the beginning";
     if (model->controllers)
         return "the model has controllers, which are not looked through";
+    if (scene->posts)
+        return "wheels stand on posts";
     return model->wheels && !across ? "the road is not known to be the same on both sides" : NULL;
 }
 

@@ -15,6 +15,11 @@ void profile_at(const Profile *profile, double time, double out[3])
         profile_form_at(profile, time, out);
 }
 
+int profile_orders(const Profile *profile)
+{
+    return profile->driven ? 3 : profile->post ? 2 : 1;
+}
+
 /* ---- where it changes --------------------------------------------------------------------------------------- */
 
 static bool is_wave(const Profile *profile)

@@ -11,6 +11,9 @@
 
 /* ---- profile.c */
 
+/* How many inputs follow it, from profile->input on: the value; of a post its rate, too; of a driven coordinate also its
+ * acceleration. */
+int profile_orders(const Profile *profile);
 /* True if it is constant for all time. */
 bool profile_is_constant(const Profile *profile);
 /* The first time after `time` at which it is less smooth; INFINITY: none. */

@@ -22,6 +22,7 @@ typedef struct Profile {
     int input;    /* index in input[] */
     double begin; /* s: all its times count from here */
     bool driven;  /* rate and acceleration follow */
+    bool post;    /* its rate follows: the height of a post */
     const char *unit;
     ProfileForm form;
     int count; /* of knots, and of points of a curve */

@@ -1,12 +1,14 @@
 /* SPDX-License-Identifier: MIT
- * The model as a scene has it: on a test rig the base is fixed and coordinates are driven (models/SCENE.md section
- * 10), light bodies lose their mass (section 9). */
+ * The model as a scene has it: on a test rig the base is fixed, coordinates are driven and wheels stand on posts
+ * (models/SCENE.md section 10), light bodies lose their mass (section 9). */
 #include "base/yaml.h"
+#include "gic_runtime.h"
 #include "model/model.h"
 #include "scene/profile.h"
 #include "scene/scene.h"
 #include "specialize/specialize.h"
 
+#include <math.h>
 #include <string.h>
 
 static void check_rig(const Scene *scene, Place at, const char *what)
@@ -33,21 +35,57 @@ bool rig_wanted(const Item *root)
     return doc_find(root, "base") || doc_find(root, "driven") || doc_find(root, "massless");
 }
 
-void rig_read(Pool *pool, const Item *root, const Model *model, Scene *scene)
+/* ---- posts -------------------------------------------------------------------------------------------------- */
+
+/* A post that moves as a road that passes under it: samples of h(x + speed t, y). */
+static void read_passing(Pool *pool, const Item *item, Profile *profile)
 {
-    if (doc_find(root, "massless"))
-        read_massless(doc_find(root, "massless"), model, scene);
-    const Item *base = doc_find(root, "base"), *driven = doc_find(root, "driven");
-    if (base) {
-        const char *word = doc_word(base, "base");
-        if (strcmp(word, "free") && strcmp(word, "fixed"))
-            diag_fail(base->at, "write fixed, or free", "the base can't be '%s'", word);
-        scene->held = !strcmp(word, "fixed") && model->free_base;
-        if (scene->held)
-            check_rig(scene, base->at, "the base is held");
+    static const double apart = 0.0025; /* s */
+    CHECK_KEYS(item, "a road under a post", "road", "x", "y", "speed");
+    const gic_road *road = road_read(pool, doc_find(item, "road"));
+    const double x = scene_number(item, "x", "x of a post", 0), y = scene_number(item, "y", "y of a post", 0);
+    const double speed = scene_positive(scene_need(item, "speed", "a road under a post"), "speed of the road");
+    const int count = (int)ceil(profile->end / apart) + 2;
+    double *time = pool_alloc(pool, sizeof *time * (size_t)count), *height = pool_alloc(pool, sizeof *time * (size_t)count);
+    for (int k = 0; k < count; ++k) {
+        double h[3];
+        time[k] = k * apart;
+        road->height(road, 0, 0, x + speed * time[k], y, h);
+        height[k] = h[0];
     }
-    if (!driven)
-        return;
+    profile_through(pool, profile, count, time, height, false);
+}
+
+static void read_posts(Pool *pool, const Item *posts, const Model *model, Scene *scene)
+{
+    const char **name = pool_alloc(pool, sizeof *name * (size_t)(model->wheels + 1));
+    for (int i = 0; i < model->wheels; ++i)
+        name[i] = model->wheel[i].name;
+    if (posts->kind != ITEM_MAP)
+        diag_fail(posts->at, "write {wheel: profile}", "posts must be a map");
+    check_rig(scene, posts->at, "wheels are on posts");
+    for (int k = 0; k < posts->count; ++k) {
+        const Item *key = posts->key[k], *value = posts->value[k];
+        const int w = scene_name_index(pool, key, key->text, "wheel", name, model->wheels);
+        Profile *profile = POOL_PUSH(pool, scene->profile, scene->profiles);
+        *profile = (Profile){.input = model->inputs + 3 * scene->driven + 2 * scene->posts,
+                             .post = true,
+                             .unit = "m",
+                             .end = scene->duration,
+                             .until = scene->duration,
+                             .model = model};
+        if (value->kind == ITEM_MAP && doc_find(value, "road"))
+            read_passing(pool, value, profile);
+        else
+            profile_read(pool, value, key->text, profile);
+        *POOL_PUSH(pool, scene->post, scene->posts) = w;
+    }
+}
+
+/* ---- coordinates, and all of it ----------------------------------------------------------------------------- */
+
+static void read_driven(Pool *pool, const Item *driven, const Model *model, Scene *scene)
+{
     const char **name = pool_alloc(pool, sizeof *name * (size_t)(model->coordinates + 1));
     for (int i = 0; i < model->coordinates; ++i)
         name[i] = model->coordinate[i].name;
@@ -75,6 +113,25 @@ void rig_read(Pool *pool, const Item *root, const Model *model, Scene *scene)
     }
 }
 
+void rig_read(Pool *pool, const Item *root, const Model *model, Scene *scene)
+{
+    if (doc_find(root, "massless"))
+        read_massless(doc_find(root, "massless"), model, scene);
+    const Item *base = doc_find(root, "base");
+    if (base) {
+        const char *word = doc_word(base, "base");
+        if (strcmp(word, "free") && strcmp(word, "fixed"))
+            diag_fail(base->at, "write fixed, or free", "the base can't be '%s'", word);
+        scene->held = !strcmp(word, "fixed") && model->free_base;
+        if (scene->held)
+            check_rig(scene, base->at, "the base is held");
+    }
+    if (doc_find(root, "driven"))
+        read_driven(pool, doc_find(root, "driven"), model, scene);
+    if (doc_find(root, "posts"))
+        read_posts(pool, doc_find(root, "posts"), model, scene);
+}
+
 static const Model *lighten(Pool *pool, const Model *model, Scene *scene)
 {
     const Model *light = model_lighten(pool, model, scene->massless, &scene->massless_names);
@@ -91,7 +148,7 @@ static const Model *lighten(Pool *pool, const Model *model, Scene *scene)
 
 const Model *scene_rig(Pool *pool, const Model *model, const Scene **scene)
 {
-    if (!*scene || (!(*scene)->held && !(*scene)->driven && (*scene)->massless == 0))
+    if (!*scene || (!(*scene)->held && !(*scene)->driven && !(*scene)->posts && (*scene)->massless == 0))
         return model;
     Scene *own = pool_alloc(pool, sizeof *own);
     *own = **scene;
@@ -99,6 +156,7 @@ const Model *scene_rig(Pool *pool, const Model *model, const Scene **scene)
     if (own->held)
         model = model_hold(pool, model, own->position, own->euler);
     model = model_drive(pool, model, own->drive, own->driven);
+    model = model_post(pool, model, own->post, own->posts);
     if (own->massless != 0)
         model = lighten(pool, model, own);
     own->signal = scene_signals(pool, model); /* new inputs are added after the others */
@@ -110,8 +168,9 @@ void scene_no_rig(const Scene *scene)
 {
     if (scene->actions)
         diag_fail((Place){scene->source, 0, 0}, "run it with gicrun", "the scene has conditions (`until`, `when`)");
-    if (scene->held || scene->driven)
-        diag_fail((Place){scene->source, 0, 0}, "run it with gicrun", "the scene is one of a rig (`base`, `driven`)");
+    if (scene->held || scene->driven || scene->posts)
+        diag_fail((Place){scene->source, 0, 0}, "run it with gicrun",
+                  "the scene is one of a rig (`base`, `driven`, `posts`)");
     if (scene->massless != 0)
         diag_fail(scene->massless_at, "run it with gicrun", "the scene leaves out the mass of light bodies");
 }

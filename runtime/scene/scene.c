@@ -492,7 +492,7 @@ void scene_inputs(void *user, int32_t lane, double time, double *input)
         const Profile *profile = &scene->profile[i];
         double out[3];
         profile_at(profile, time, out);
-        memcpy(input + profile->input, out, (profile->driven ? 3 : 1) * sizeof *out);
+        memcpy(input + profile->input, out, (size_t)profile_orders(profile) * sizeof *out);
     }
     if (scene->driver)
         driver_inputs(scene->driver, time, input);
@@ -600,7 +600,7 @@ static const Scene *scene_of(Pool *pool, const Item *root, const char *path, con
     if (other && !doc_find(root, "gicscene"))
         diag_fail(other->at, "name the model first, then the scene", "this is a model, where a scene is wanted");
     CHECK_KEYS(root, "the scene", "gicscene", "description", "duration", "step", "integrator", "tolerance", "ratio",
-               "steady", "sleep", "locate", "most_work", "keep_jacobian", "massless", "base", "driven", "output_step",
+               "steady", "sleep", "locate", "most_work", "keep_jacobian", "massless", "base", "driven", "posts", "output_step",
                "initial", "road", "inputs", "input_file", "driver", "course", "parameters", "outputs", "plot", "units",
                "until", "when");
     scene->source = root->at.source;

@@ -57,6 +57,7 @@ static void links_of(Instance *self, const double *y, const double *e, double *l
         [WHOLE_x] = tape_array(self, engine->x_offset),
         [WHOLE_xd] = tape_array(self, engine->xd_offset),
         [WHOLE_m] = tape_array(self, engine->motion_offset),
+        [WHOLE_u] = tape_array(self, engine->code.input_offset),
         [WHOLE_DERIVED] = tape_array(self, engine->derived_offset),
         [WHOLE_link] = link,
     };

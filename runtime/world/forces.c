@@ -414,6 +414,11 @@ static void add_force(World *world, int index)
 
 /* ---- wheels ---------------------------------------------------------------------------------------------- */
 
+double world_post(const World *world, const Wheel *wheel, int order)
+{
+    return wheel->post ? world->input[wheel->post - 1 + order] : 0;
+}
+
 /* A vertical spring and damper. */
 static int add_contact(World *world, int index)
 {
@@ -424,8 +429,8 @@ static int add_contact(World *world, int index)
         world->road->height(world->road, world->lane, world->time, center.r[0], center.r[1], road);
     if (!gic_finite(road, 3))
         return GIC_ERROR_ROAD;
-    const double deflection = wheel->radius + road[0] - center.r[2];
-    const double rate = road[1] * center.v[0] + road[2] * center.v[1] - center.v[2];
+    const double height = road[0] + world_post(world, wheel, 0), deflection = wheel->radius + height - center.r[2];
+    const double rate = road[1] * center.v[0] + road[2] * center.v[1] + world_post(world, wheel, 1) - center.v[2];
     Touch *touch = &world->touch[index];
     *touch = (Touch){deflection, rate, 0, 0};
     if (deflection > 0) {
@@ -439,7 +444,7 @@ static int add_contact(World *world, int index)
     out[0] = fz;
     out[1] = deflection;
     out[2] = rate;
-    out[3] = road[0];
+    out[3] = height;
     return GIC_OK;
 }
 
@@ -449,6 +454,8 @@ void world_wheel_motion(const World *world, int index, WheelMotion *motion)
     const Point center = point_at(world, wheel->body, wheel->center);
     copy3(center.r, motion->center);
     copy3(center.v, motion->velocity);
+    motion->center[2] -= world_post(world, wheel, 0);
+    motion->velocity[2] -= world_post(world, wheel, 1);
     apply3(world->A[wheel->body], wheel->axis, motion->axis);
     copy3(world->omega[wheel->body], motion->omega);
     motion->drive_turn = dot3(motion->axis, world->omega[wheel->drive_body]);
@@ -496,16 +503,18 @@ static void add_tire(World *world, int index)
     const Wheel *wheel = &world->model->wheel[index];
     const WheelMotion *motion = &world->motion[index];
     const Rolling *rolling = &world->rolling[index];
+    const double post = world_post(world, wheel, 0);
     double arm[3], moment[3], *carrier = world->wrench[wheel->body], *driver = world->wrench[wheel->drive_body] + 3;
     sub3(motion->center, world->q[wheel->body], arm);
+    arm[2] += post;
     cross3(arm, rolling->force, moment);
     add3(carrier, rolling->force, carrier);
     add3(carrier + 3, moment, carrier + 3);
     add3(carrier + 3, rolling->torque, carrier + 3);
     add3(driver, rolling->reaction, driver);
-    world->power += rolling->power;
+    world->power += rolling->power + rolling->force[2] * world_post(world, wheel, 1);
     memcpy(world->wheel[index],
-           (const double[4]){rolling->fz, rolling->deflection, rolling->deflection_rate, rolling->height},
+           (const double[4]){rolling->fz, rolling->deflection, rolling->deflection_rate, rolling->height + post},
            sizeof world->wheel[index]);
 }
 

@@ -189,7 +189,10 @@ void world_output(const World *world, const Output *output, double *out)
     case OUTPUT_REACTION: reaction(world, output, out); break;
     case OUTPUT_WHEEL: memcpy(out, world->wheel[i], sizeof world->wheel[i]); break;
     case OUTPUT_TIRE: tire(world, i, out); break;
-    case OUTPUT_CONTACT: copy3(world->rolling[i].point, out); break;
+    case OUTPUT_CONTACT:
+        copy3(world->rolling[i].point, out);
+        out[2] += world_post(world, &world->model->wheel[i], 0);
+        break;
     case OUTPUT_POWERTRAIN: powertrain(world, out); break;
     case OUTPUT_ENERGY: {
         double all[3];

@@ -177,7 +177,10 @@ bool world_signals_are_sure(const World *world);
 /* True if the formula takes an angle by atan2 on the half line where it jumps by a whole turn: there the sign of a zero
  * decides, or rounding. */
 bool world_law_jumps(const World *world, const Law *law);
-/* How the carrier of a wheel with a tire moves at the present configuration. */
+/* The height of the post under a wheel, order 0, or its rate, 1; 0 where there is none. */
+double world_post(const World *world, const Wheel *wheel, int order);
+/* How the carrier of a wheel with a tire moves at the present configuration. Of a wheel on a post place and velocity
+ * count from the post, which is the road to it. */
 void world_wheel_motion(const World *world, int wheel, WheelMotion *motion);
 /* All wheels with tires, and the powertrain, where carriers move as motion[] says: rates of these fast states, and
  * rolling and driveline. Of the World's configuration only formulas depend on coordinates. GIC_ERROR_ROAD as below. */
