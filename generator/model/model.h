@@ -327,7 +327,8 @@ typedef struct Wheel {
     int drive_body;
     double windup;
     int fast; /* index of its first fast state among the model's: spin, slip_x, slip_y and, with a brake, brake */
-    int post; /* 1 + the index of the input by which the road under it is raised, m; that of its rate follows. 0: none */
+    int post; /* 1 + the index of the input by which the road under it is raised, m; that of its rate follows. 0: none
+               */
 } Wheel;
 
 enum { FAST_SPIN, FAST_SLIP_X, FAST_SLIP_Y, FAST_BRAKE, FAST_MOST };

@@ -16,7 +16,7 @@ static const double begin = 4, rest = 4; /* s at rest before a sweep and after i
 static const double first = 0.5;         /* Hz, where it begins; it ends 15 % above the highest that is asked for */
 static const double above = 1.15;
 static const double sweep = 40;                       /* s */
-static const double table[] = {1, 2, 5, 10, 15, 20}; /* Hz in the table */
+static const double table[] = {1, 2, 5, 10, 15, 20};  /* Hz in the table */
 enum { BESIDE = 1, CURVE = 60 };                      /* lines of the spectrum to each side; points of a curve */
 enum { SPEED, CLASS, DURATION, SEED, AMPLITUDE, TO }; /* keys */
 enum { ROLL = 3, PITCH = 4 };                         /* small motions */
@@ -196,18 +196,18 @@ static const Stand *stand_of(TestCar *car, const Model *posted, const Scene *sce
     const size_t size = (size_t)n * sizeof(double);
     Stand *s = pool_alloc(pool, sizeof *s);
     double *f = pool_alloc(pool, size), *load = pool_alloc(pool, ((size_t)outputs + 1) * sizeof *load), A[9];
-    *s = (Stand){.linear = linear,
-                 .n = n,
-                 .wheels = wheels,
-                 .A = pool_alloc(pool, (size_t)n * size),
-                 .C = pool_alloc(pool, (size_t)wheels * size),
-                 .B = {pool_alloc(pool, size), pool_alloc(pool, size)},
-                 .D = {pool_alloc(pool, (size_t)wheels * sizeof(double)),
-                       pool_alloc(pool, (size_t)wheels * sizeof(double))},
-                 .column = pool_alloc(pool, 2 * (size_t)wheels * sizeof(double *)),
-                 .out = pool_alloc(pool, 2 * (size_t)wheels * sizeof(double *)),
-                 .work = pool_alloc(pool, 4 * (size_t)n * size),
-                 .rhs = pool_alloc(pool, 2 * size)};
+    *s = (Stand){
+        .linear = linear,
+        .n = n,
+        .wheels = wheels,
+        .A = pool_alloc(pool, (size_t)n * size),
+        .C = pool_alloc(pool, (size_t)wheels * size),
+        .B = {pool_alloc(pool, size), pool_alloc(pool, size)},
+        .D = {pool_alloc(pool, (size_t)wheels * sizeof(double)), pool_alloc(pool, (size_t)wheels * sizeof(double))},
+        .column = pool_alloc(pool, 2 * (size_t)wheels * sizeof(double *)),
+        .out = pool_alloc(pool, 2 * (size_t)wheels * sizeof(double *)),
+        .work = pool_alloc(pool, 4 * (size_t)n * size),
+        .rhs = pool_alloc(pool, 2 * size)};
     copy3(car->com, s->com);
     mat_from_euler(tape_array(found->self, code->state_offset) + 3, A);
     copy3(A + 6, s->up);
@@ -324,7 +324,8 @@ static void add(Manoeuvre *m, const char *section, const char *at, const char *w
         sheet_add(m->result, section, at, what, unit, value);
 }
 
-static void add_rows(Manoeuvre *m, const Stand *stand, const PostMotion *motion, const Trial *trial, const double *still)
+static void add_rows(Manoeuvre *m, const Stand *stand, const PostMotion *motion, const Trial *trial,
+                     const double *still)
 {
     const Model *model = m->car->model;
     Response run[model->wheels + 2], linear[model->wheels + 2];
@@ -349,7 +350,8 @@ static void add_rows(Manoeuvre *m, const Stand *stand, const PostMotion *motion,
 }
 
 /* Gains over the frequency, by the sweep and beside it by the linear model. */
-static void add_curves(Manoeuvre *m, const Stand *stand, const PostMotion *motion, const Trial *trial, const double *still)
+static void add_curves(Manoeuvre *m, const Stand *stand, const PostMotion *motion, const Trial *trial,
+                       const double *still)
 {
     const Model *model = m->car->model;
     const int numbers = model->wheels + 2;
@@ -368,7 +370,12 @@ static void add_curves(Manoeuvre *m, const Stand *stand, const PostMotion *motio
         *POOL_PUSH(m->pool, m->table, m->tables) = (ManoeuvreTable){
             n == 1 ? pool_print(m->pool, "%s: %s", motion->title, motion->what)
                    : pool_print(m->pool, "%s: load of %s by the height", motion->title, model->wheel[n - 2].name),
-            n == 1 ? motion->unit : "N/m", "frequency, Hz", CURVE, 2, x, y + 2 * CURVE * n};
+            n == 1 ? motion->unit : "N/m",
+            "frequency, Hz",
+            CURVE,
+            2,
+            x,
+            y + 2 * CURVE * n};
 }
 
 static void add_motion(Manoeuvre *m, const Stand *stand, const PostMotion *motion)

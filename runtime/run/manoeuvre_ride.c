@@ -19,7 +19,8 @@ const double ride_run_in = 5, ride_sampling = 0.005;
 /* Segments of SEGMENT samples, half over each other, each without its mean and under a Hann window. */
 enum { SEGMENT = 1024, LINES = SEGMENT / 2 };
 
-/* One-sided density of `count` samples, `ride_sampling` apart, at k / (SEGMENT ride_sampling) Hz for k from 0 to LINES - 1. */
+/* One-sided density of `count` samples, `ride_sampling` apart, at k / (SEGMENT ride_sampling) Hz for k from 0 to LINES
+ * - 1. */
 static void welch(int count, const double *sample, double density[LINES])
 {
     double power = 0;

@@ -11,8 +11,8 @@
 
 /* ---- profile.c */
 
-/* How many inputs follow it, from profile->input on: the value; of a post its rate, too; of a driven coordinate also its
- * acceleration. */
+/* How many inputs follow it, from profile->input on: the value; of a post its rate, too; of a driven coordinate also
+ * its acceleration. */
 int profile_orders(const Profile *profile);
 /* True if it is constant for all time. */
 bool profile_is_constant(const Profile *profile);

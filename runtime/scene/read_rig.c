@@ -46,7 +46,8 @@ static void read_passing(Pool *pool, const Item *item, Profile *profile)
     const double x = scene_number(item, "x", "x of a post", 0), y = scene_number(item, "y", "y of a post", 0);
     const double speed = scene_positive(scene_need(item, "speed", "a road under a post"), "speed of the road");
     const int count = (int)ceil(profile->end / apart) + 2;
-    double *time = pool_alloc(pool, sizeof *time * (size_t)count), *height = pool_alloc(pool, sizeof *time * (size_t)count);
+    double *time = pool_alloc(pool, sizeof *time * (size_t)count),
+           *height = pool_alloc(pool, sizeof *time * (size_t)count);
     for (int k = 0; k < count; ++k) {
         double h[3];
         time[k] = k * apart;

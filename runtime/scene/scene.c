@@ -600,9 +600,9 @@ static const Scene *scene_of(Pool *pool, const Item *root, const char *path, con
     if (other && !doc_find(root, "gicscene"))
         diag_fail(other->at, "name the model first, then the scene", "this is a model, where a scene is wanted");
     CHECK_KEYS(root, "the scene", "gicscene", "description", "duration", "step", "integrator", "tolerance", "ratio",
-               "steady", "sleep", "locate", "most_work", "keep_jacobian", "massless", "base", "driven", "posts", "output_step",
-               "initial", "road", "inputs", "input_file", "driver", "course", "parameters", "outputs", "plot", "units",
-               "until", "when");
+               "steady", "sleep", "locate", "most_work", "keep_jacobian", "massless", "base", "driven", "posts",
+               "output_step", "initial", "road", "inputs", "input_file", "driver", "course", "parameters", "outputs",
+               "plot", "units", "until", "when");
     scene->source = root->at.source;
     const Item *version = scene_need(root, "gicscene", "the scene");
     if (doc_number(version, "gicscene") != 1)

@@ -85,8 +85,9 @@ typedef struct Scene {
     Place massless_at;
     double lost; /* from scene_rig(): see model_lost() */
     const char *massless_names;
-    int driven, *drive; /* free coordinates of the model that the scene drives, by the last profiles but those of posts */
-    int posts, *post;   /* wheels under which it raises the road, by the last profiles */
+    int driven,
+        *drive;       /* free coordinates of the model that the scene drives, by the last profiles but those of posts */
+    int posts, *post; /* wheels under which it raises the road, by the last profiles */
 } Scene;
 
 /* Read a scene for a model. Any mistake ends in diag_fail. integrator, tolerance: replace the scene's; NULL, 0: do not.
@@ -177,7 +178,8 @@ double *scene_numbers(Pool *pool, const Item *item, const char *what, int least)
 /* All signals, as in Scene. */
 gic_signal *scene_signals(Pool *pool, const Model *model);
 /* read_rig.c: read the keys `base`, `driven`, `posts` and `massless`. */
-/* True: the scene holds the base, drives coordinates or leaves out masses: geometric parameters have fixed values then. */
+/* True: the scene holds the base, drives coordinates or leaves out masses: geometric parameters have fixed values then.
+ */
 bool rig_wanted(const Item *root);
 void rig_read(Pool *pool, const Item *root, const Model *model, Scene *scene);
 /* The model with its base held, coordinates driven and masses removed as the scene says; *scene is replaced by the

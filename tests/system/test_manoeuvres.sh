@@ -15,7 +15,7 @@ verdict $? "the vehicle with linear tires"
 # ---- the complete vehicle
 for name in 'steady-speed speed=16' 'steady-radius radius=30' 'step-steer speed=16' 'ramp-steer speed=16' 'sine speed=16' 'sine-dwell speed=16' \
     'frequency speed=16 duration=20' 'random speed=16 duration=30' lane-change 'lane-change part=1' 'lift-off speed=16' 'turn-braking speed=16' \
-    'j-turn speed=16' 'fishhook speed=16' 'braking speed=16' 'split-braking speed=16' 'coast-down speed=16' acceleration 'elasticity low=8 high=14' 'ride speed=15 class=3 duration=20' 'ride-speeds high=15 duration=15'; do
+    'j-turn speed=16' 'fishhook speed=16' 'braking speed=16' 'split-braking speed=16' 'coast-down speed=16' acceleration 'elasticity low=8 high=14' 'ride speed=15 class=3 duration=20' 'ride-speeds high=15 duration=15' 'four-post duration=10'; do
     # shellcheck disable=SC2086 # a name and its keys
     set -- $name
     manoeuvre=$1
@@ -31,6 +31,40 @@ run --manoeuvre step-steer "$linear" speed=20 ay=1 --report "$work/page.html"
 sed -n '/<summary>left/,/<\/pre>/p' "$work/page.html" | sed -e 's/.*<pre>//' -e 's/<\/pre>.*//' -e 's/&quot;/"/g' >"$work/left.scene"
 run "$linear" "$work/left.scene" -q -o "$work/again.csv"
 check 'a scene of the page runs again' exits 0
+
+# ---- posts: heights at nice numbers, by an interpreted engine as by generated code; where a vehicle has no two sides
+cat >"$work/posts.scene" <<'EOF'
+gicscene: 1
+duration: 3
+integrator: rkck
+tolerance: 1e-9
+output_step: 0.5
+initial: {position: [0, 0, 0.03]}
+posts:
+  f_l: {step: {to: 0.02, start: 0.5, rise: 0.25}}
+  r_r: {road: {type: slope, x: 0.01}, x: 1, y: 0, speed: 0.5}
+outputs: [wheel_f_l.height, wheel_r_r.height, wheel_f_l, wheel_r_r, chassis]
+EOF
+sed 's/^wheels:/outputs: {chassis: {type: position, body: chassis}, wheel_f_l: {type: wheel, wheel: f_l}, wheel_r_r: {type: wheel, wheel: r_r}}\n&/' "$linear" >"$work/outputs.veh"
+for engine in gic tape cc gcp1; do
+    run --engine $engine "$work/outputs.veh" "$work/posts.scene" -q -o "$work/$engine.csv"
+    check "posts by $engine" exits 0
+    heights() { awk -F, 'NR > 1 {n += ($2 - ($1 > 0.8) * 0.02) ^ 2 < 1e-24 || $1 == 0.5; m += ($3 - 0.01 - 0.005 * $1) ^ 2 < 1e-24} END {exit n != 7 || m != 7}' "$work/$engine.csv"; }
+    check "posts by $engine: heights and rates" heights
+    alike() { awk -F, 'NR == FNR {for (i = 1; i <= NF; i++) a[FNR, i] = $i; next} FNR > 1 {for (i = 1; i <= NF; i++) if (($i - a[FNR, i]) ^ 2 > (1e-5 + 1e-6 * a[FNR, i]) ^ 2) bad = 1; n++} END {exit bad || n != 7}' "$work/gic.csv" "$work/$engine.csv"; }
+    check "posts by $engine: as by gic" alike
+done
+sed 's/f_l: {step/nobody: {step/' "$work/posts.scene" >"$work/wrong.scene"
+run "$work/outputs.veh" "$work/wrong.scene"
+check 'a post under no wheel' says "the model has no wheel 'nobody'"
+sed 's/speed: 0.5}/speed: 0}/' "$work/posts.scene" >"$work/wrong.scene"
+run "$work/outputs.veh" "$work/wrong.scene"
+check 'a road that does not pass' exits 1
+run --manoeuvre four-post "$models/motorcycle.veh" duration=10 to=5
+check 'a motorcycle on posts' exits 0
+check 'it has no two sides' prints 'roll: the vehicle has no wheels on both sides'
+run --manoeuvre four-post "$linear" duration=10 amplitude=0.05 to=10
+check 'posts that move too far' prints 'a wheel leaves its post'
 
 # the longer the wheelbase and the slower, the same: another number of a key changes what it says and nothing else
 run --manoeuvre braking "$linear" speed=20 brake=0.25 -q -o "$work/a.csv"
