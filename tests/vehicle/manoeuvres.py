@@ -301,13 +301,13 @@ for words, levels in ((["lift-off", f"speed={V}", "ay=1"], [None]), (["turn-brak
             M = 2 * (p[1:] - p[0])
             centre = np.linalg.solve(M, (p[1:] ** 2).sum(axis=1) - (p[0] ** 2).sum())
             check(f"{name}: radius", value[f"{name}.radius"], np.hypot(*(p[2] - centre)), 0.01)
-            for t in (0.5, 1, 2):
-                check(f"{name}: yaw rate after {t} s", value[f"{name}.at_{t:g}.yaw_rate_ratio"],
-                      at("yaw_rate", 10 + t) * R / speed(10 + t), 1e-6)
-                check(f"{name}: side slip after {t} s", value[f"{name}.at_{t:g}.sideslip_change"],
-                      sign * (at("sideslip", 10 + t) - at("sideslip", 10)), 1e-6, 1e-3)
-                inwards = np.hypot(*(p[2] - centre)) - np.hypot(at("x", 10 + t) - centre[0], at("y", 10 + t) - centre[1])
-                check(f"{name}: inwards after {t} s", value[f"{name}.at_{t:g}.inwards"], inwards, 0.02, 1)
+            for after in (0.5, 1, 2):
+                check(f"{name}: yaw rate after {after} s", value[f"{name}.at_{after:g}.yaw_rate_ratio"],
+                      at("yaw_rate", 10 + after) * R / speed(10 + after), 1e-6)
+                check(f"{name}: side slip after {after} s", value[f"{name}.at_{after:g}.sideslip_change"],
+                      sign * (at("sideslip", 10 + after) - at("sideslip", 10)), 1e-6, 1e-3)
+                inwards = np.hypot(*(p[2] - centre)) - np.hypot(at("x", 10 + after) - centre[0], at("y", 10 + after) - centre[1])
+                check(f"{name}: inwards after {after} s", value[f"{name}.at_{after:g}.inwards"], inwards, 0.02, 1)
             check(f"{name}: deceleration", value[f"{name}.deceleration"], at("speed", 10) - at("speed", 11), 1e-9)
             if level:  # pedal in 0.1 s: 4 wheels, as straight ahead
                 wanted = 0.95 * 4 * 2000 * level / (0.313 - deflection) / (m + 4 * spin_inertia / radius / (0.313 - deflection))
