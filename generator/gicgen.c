@@ -206,8 +206,9 @@ static Options read_options(int count, char **word)
         usage_error("--derivatives is for the code of one vehicle in any scene, without --batch, --lanes and --scene",
                     NULL);
     if (options.implicit && (options.task != TASK_GENERATE || options.batch.lanes || options.scene))
-        usage_error("--implicit is for the code of one vehicle in any scene, without --batch, --lanes, --scene and --fmu",
-                    NULL);
+        usage_error(
+            "--implicit is for the code of one vehicle in any scene, without --batch, --lanes, --scene and --fmu",
+            NULL);
     if (options.task == TASK_BATCH && !options.batch.lanes)
         options.batch.lanes = 4;
     return options;
