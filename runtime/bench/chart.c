@@ -3,6 +3,7 @@
 #include "base/file.h"
 #include "base/message.h"
 #include "bench/bench.h"
+#include "host/axis.h"
 #include "host/host.h"
 
 #include <math.h>
@@ -68,10 +69,8 @@ static const char *charts_script(Pool *pool, const Chart *const *chart, int coun
     text_print(&out, "set logscale xy\nset format xy '%%g'\nset pointsize 0.6\n"
                      "set grid back linetype 1 linewidth 0.5 linecolor rgb '#d5dce2'\n"
                      "set border 3 linewidth 0.8 linecolor rgb '#5c6873'\nset tics nomirror out scale 0.5\n");
-    /* as in runtime/host/plot.c */
-    static const char *const ink[] = {"#0072b2", "#d55e00", "#007d5c", "#a5457f", "#a66f00", "#3a8fc4", "#333333"};
-    for (int i = 0; i < (int)(sizeof ink / sizeof *ink); ++i)
-        text_print(&out, "set linetype %d linecolor rgb '%s'\n", i + 1, ink[i]);
+    for (int i = 0; i < AXIS_INKS; ++i)
+        text_print(&out, "set linetype %d linecolor rgb '%s'\n", i + 1, axis_ink(i));
     for (int i = 0; i < count; ++i)
         chart_data(&out, chart[i], i);
     if (count > 1)

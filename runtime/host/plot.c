@@ -3,6 +3,7 @@
 #include "base/file.h"
 #include "base/message.h"
 #include "gic_runtime.h"
+#include "host/axis.h"
 #include "host/host.h"
 
 #include <errno.h>
@@ -12,11 +13,6 @@
 
 /* Pixels: size of the picture; height of a panel over time, largest height of one with equal scales; margins. */
 enum { WIDTH = 900, TALL = 230, TALLEST = 460, LEFT = 104, RIGHT = 28, HEAD = 30, FOOT = 62, TITLE = 46, ROW = 19 };
-
-/* Colours of Okabe and Ito, which the colour-blind can tell apart; further curves are dashed. The page of --animate
- * uses the same. */
-static const char *const ink[] = {"#0072b2", "#d55e00", "#007d5c", "#a5457f", "#a66f00", "#3a8fc4", "#333333"};
-enum { INKS = sizeof ink / sizeof *ink };
 
 bool plot_known(const char *path)
 {
@@ -107,7 +103,7 @@ static void data_block(Text *script, const Plot *plot)
     text_print(script, "$data << END\n");
     for (int row = 0; row < plot->rows; ++row)
         for (int k = 0; k <= signals; ++k)
-            text_print(script, "%.9g%c", plot->sample[row * (signals + 1) + k], k < signals ? ' ' : '\n');
+            text_print(script, "%.15g%c", plot->sample[row * (signals + 1) + k], k < signals ? ' ' : '\n');
     text_print(script, "END\n");
 }
 
@@ -117,6 +113,7 @@ static void data_block(Text *script, const Plot *plot)
 typedef struct Frame {
     int left, right, top, bottom;
     double scale, low[2], high[2], tick;
+    bool wide[2]; /* the range is wider than that of the numbers */
 } Frame;
 
 static void place(Text *script, const Frame *frame, int height)
@@ -155,37 +152,7 @@ static int legend_rows(Pool *pool, const Plot *plot, int first, int *columns)
     return (names + *columns - 1) / *columns;
 }
 
-/* ---- panels -------------------------------------------------------------------------------------------------- */
-
-static void panel(Text *script, const Plot *plot, int first, bool last)
-{
-    int columns;
-    legend_rows(script->pool, plot, first, &columns);
-    text_print(script, "set xlabel %s\nset ylabel ", last ? "'time [s]'" : "''");
-    plot_text(script, quantity_text(script->pool, plot->signal[first].unit, plot->shown[first]));
-    text_print(script, "\nset key maxcols %d\nplot ", columns);
-    for (int i = first, drawn = 0; i < plot->curves; ++i) {
-        if (strcmp(plot->signal[i].unit, plot->signal[first].unit))
-            continue;
-        text_print(script, "%s$data using 1:%d with lines linewidth 1.5 linecolor rgb '%s' dashtype %d title ",
-                   drawn ? ", " : "", i + 2, ink[drawn % INKS], drawn / INKS % 5 + 1);
-        plot_text(script, plot->signal[i].name);
-        if (is_in_other(script->pool, plot, i)) {
-            text_print(script, ", $other using 1:%d with lines linewidth 2 linecolor rgb '%s' dashtype 3 title ", i + 2,
-                       ink[drawn % INKS]);
-            plot_text(script, name_in_other(script->pool, plot, i));
-        }
-        ++drawn;
-    }
-    text_print(script, "\n");
-}
-
-static void axis_label(Text *script, const Plot *plot, char axis, int signal)
-{
-    text_print(script, "set %clabel ", axis);
-    plot_text(script, pool_print(script->pool, "%s [%s]", plot->signal[signal].name, plot->shown[signal]));
-    text_print(script, "\n");
-}
+/* ---- ticks --------------------------------------------------------------------------------------------------- */
 
 /* The least and the largest value of a signal. */
 static void limits(Pool *pool, const Plot *plot, int signal, double *low, double *high)
@@ -205,11 +172,83 @@ static void limits(Pool *pool, const Plot *plot, int signal, double *low, double
     }
 }
 
-/* 1, 2 or 5 times a power of ten: the smallest that is not below x. */
-static double round_up(double x)
+/* Pixels from one tick of x to the next: room for such a number, whose characters are 8 pixels wide. */
+static double tick_room(int digits)
 {
-    const double ten = pow(10, floor(log10(x))), over = x / ten;
-    return ten * (over <= 1 ? 1 : over <= 2 ? 2 : over <= 5 ? 5 : 10);
+    const int sign_point_and_space = 3;
+    return 8.0 * (digits + sign_point_and_space);
+}
+
+/* gnuplot's own format has fewer digits for some numbers, such as 0.00011. */
+static void tick_format(Text *script, char axis, int digits)
+{
+    text_print(script, "set format %c '%%.%dg'\n", axis, digits);
+}
+
+/* A range in which numbers differ in their ninth digit at most is widened, so that labels have room: true then. One
+ * that is empty is a hundredth of its number to either side, or 1 of 0. */
+static bool widen(double *low, double *high)
+{
+    const double most = fmax(fabs(*low), fabs(*high)), middle = (*low + *high) / 2;
+    const double least = *high > *low ? 2e-8 * most : most > 0 ? 0.01 * most : 1;
+    if (!(*high - *low < 2 * least))
+        return false;
+    *low = middle - least;
+    *high = middle + least;
+    return true;
+}
+
+/* Of an axis by itself. wide: its range is not that of the numbers. */
+static void tick_range(Text *script, char axis, double low, double high, bool wide)
+{
+    if (wide)
+        text_print(script, "set %crange [%.15g:%.15g]\n", axis, low, high);
+    else
+        text_print(script, "set %crange [*:*]\n", axis);
+    tick_format(script, axis, axis_digits(low, high));
+}
+
+/* ---- panels -------------------------------------------------------------------------------------------------- */
+
+static void panel(Text *script, const Plot *plot, int first, bool last)
+{
+    int columns;
+    legend_rows(script->pool, plot, first, &columns);
+    text_print(script, "set xlabel %s\nset ylabel ", last ? "'time [s]'" : "''");
+    plot_text(script, quantity_text(script->pool, plot->signal[first].unit, plot->shown[first]));
+    double low = INFINITY, high = -INFINITY;
+    for (int i = first; i < plot->curves; ++i)
+        if (!strcmp(plot->signal[i].unit, plot->signal[first].unit)) {
+            double least, most;
+            limits(script->pool, plot, i, &least, &most);
+            low = fmin(low, least);
+            high = fmax(high, most);
+        }
+    text_print(script, "\n");
+    const bool wide = widen(&low, &high);
+    tick_range(script, 'y', low, high, wide);
+    text_print(script, "set key maxcols %d\nplot ", columns);
+    for (int i = first, drawn = 0; i < plot->curves; ++i) {
+        if (strcmp(plot->signal[i].unit, plot->signal[first].unit))
+            continue;
+        text_print(script, "%s$data using 1:%d with lines linewidth 1.5 linecolor rgb '%s' dashtype %d title ",
+                   drawn ? ", " : "", i + 2, axis_ink(drawn), drawn / AXIS_INKS % 5 + 1);
+        plot_text(script, plot->signal[i].name);
+        if (is_in_other(script->pool, plot, i)) {
+            text_print(script, ", $other using 1:%d with lines linewidth 2 linecolor rgb '%s' dashtype 3 title ", i + 2,
+                       axis_ink(drawn));
+            plot_text(script, name_in_other(script->pool, plot, i));
+        }
+        ++drawn;
+    }
+    text_print(script, "\n");
+}
+
+static void axis_label(Text *script, const Plot *plot, char axis, int signal)
+{
+    text_print(script, "set %clabel ", axis);
+    plot_text(script, pool_print(script->pool, "%s [%s]", plot->signal[signal].name, plot->shown[signal]));
+    text_print(script, "\n");
 }
 
 /* If both axes are lengths and neither extent is too small, the plane has the shape of the curve, with equal scales and
@@ -217,23 +256,40 @@ static double round_up(double x)
 static Frame frame_over(Pool *pool, const Plot *plot, int panel, int top)
 {
     const int x = plot->curves + 2 * panel, y = x + 1, wide = WIDTH - LEFT - RIGHT;
-    const double most = 10, narrowest = 70; /* pixels between ticks: room for numbers side by side */
+    const double most = 10;
     Frame frame = {.left = LEFT, .right = WIDTH - RIGHT, .top = top + HEAD, .bottom = top + HEAD + TALL};
     limits(pool, plot, x, &frame.low[0], &frame.high[0]);
     limits(pool, plot, y, &frame.low[1], &frame.high[1]);
+    for (int k = 0; k < 2; ++k)
+        frame.wide[k] = widen(&frame.low[k], &frame.high[k]);
     const double across = frame.high[0] - frame.low[0], up = frame.high[1] - frame.low[1];
-    if (strcmp(plot->signal[x].unit, plot->signal[y].unit) || !(across <= most * up && up <= most * across))
+    if (strcmp(plot->signal[x].unit, plot->signal[y].unit) || !(across <= most * up && up <= most * across)) {
+        const int digits = axis_digits(frame.low[0], frame.high[0]);
+        if (digits > 6) /* a long number stands below the end of the axis */
+            frame.right = WIDTH - (int)tick_room(digits) / 2;
         return frame;
+    }
     for (int k = 0; k < 2; ++k) { /* keep lines off the edge */
         frame.low[k] -= 0.04 * fmax(across, up);
         frame.high[k] += 0.04 * fmax(across, up);
     }
     const double size[2] = {frame.high[0] - frame.low[0], frame.high[1] - frame.low[1]};
     frame.scale = fmin(wide / size[0], (double)TALLEST / size[1]);
-    frame.tick = round_up(narrowest / frame.scale);
+    frame.tick = axis_step(tick_room(axis_digits(frame.low[0], frame.high[0])) / frame.scale);
     frame.right = LEFT + (int)(frame.scale * size[0]);
     frame.bottom = frame.top + (int)(frame.scale * size[1]);
     return frame;
+}
+
+/* Of axes with scales of their own. Long numbers of x need more room than gnuplot gives them. */
+static void free_ticks(Text *script, const Frame *frame)
+{
+    const double low = frame->low[0], high = frame->high[0];
+    const int digits = axis_digits(low, high);
+    text_print(script, "set xtics autofreq\nset ytics autofreq\n");
+    if (digits > 6)
+        text_print(script, "set xtics %.9g\n",
+                   axis_step((high - low) * tick_room(digits) / (frame->right - frame->left)));
 }
 
 static void panel_over(Text *script, const Plot *plot, int panel, const Frame *frame)
@@ -242,16 +298,21 @@ static void panel_over(Text *script, const Plot *plot, int panel, const Frame *f
     axis_label(script, plot, 'x', x);
     axis_label(script, plot, 'y', y);
     for (int k = 0; k < 2 && frame->scale > 0; ++k)
-        text_print(script, "set %crange [%.9g:%.9g]\nset %ctics %.9g\n", "xy"[k], frame -> low[k], frame -> high[k],
+        text_print(script, "set %crange [%.15g:%.15g]\nset %ctics %.9g\n", "xy"[k], frame -> low[k], frame -> high[k],
                    "xy"[k], frame -> tick);
+    for (int k = 0; k < 2; ++k)
+        if (frame->scale > 0)
+            tick_format(script, "xy"[k], axis_digits(frame->low[k], frame->high[k]));
+        else
+            tick_range(script, "xy"[k], frame -> low[k], frame -> high[k], frame -> wide[k]);
     if (!(frame->scale > 0))
-        text_print(script, "set autoscale\nset xtics autofreq\nset ytics autofreq\n");
+        free_ticks(script, frame);
     text_print(script, "set key maxcols 1\nplot $data using %d:%d with lines linewidth 1.5 linecolor rgb '%s' title ",
-               x + 2, y + 2, ink[0]);
+               x + 2, y + 2, axis_ink(0));
     plot_text(script, pool_print(script->pool, "%s over %s", plot->signal[y].name, plot->signal[x].name));
     if (is_in_other(script->pool, plot, x) && is_in_other(script->pool, plot, y)) {
         text_print(script, ", $other using %d:%d with lines linewidth 2 linecolor rgb '%s' dashtype 3 title ", x + 2,
-                   y + 2, ink[0]);
+                   y + 2, axis_ink(0));
         plot_text(script, plot->other_name);
     }
     text_print(script, "\n");

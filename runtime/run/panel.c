@@ -1,28 +1,18 @@
 /* SPDX-License-Identifier: MIT
  * Diagrams as SVG: curves, a grid at round numbers. */
 #include "run/panel.h"
+#include "host/axis.h"
 
 #include <math.h>
 #include <stdbool.h>
-
-static const char *const color[] = {"#1660a8", "#c03a1b", "#2a8a3c", "#8a5a00",
-                                    "#7a3a9a", "#0a8a8a", "#555",    "#c03a8a"};
-enum { COLORS = sizeof color / sizeof *color };
+#include <string.h>
 
 const char *panel_color(int curve)
 {
-    return color[curve % COLORS];
+    return axis_ink(curve);
 }
 
-enum { WIDTH = 280, HEIGHT = 170, LEFT = 48, RIGHT = 8, TOP = 8, BOTTOM = 32 };
-
-/* The step of ticks: 1, 2 or 5 times a power of ten, at most `most` steps. */
-static double tick_step(double range, int most)
-{
-    const double raw = range / most, power = pow(10, floor(log10(raw)));
-    const double share = raw / power;
-    return power * (share <= 1 + 1e-9 ? 1 : share <= 2 + 1e-9 ? 2 : share <= 5 + 1e-9 ? 5 : 10);
-}
+enum { WIDTH = 280, HEIGHT = 170, LEFT = 62, RIGHT = 14, TOP = 8, BOTTOM = 32 };
 
 /* Range of what is finite, never empty. */
 static void range_of(const double *value, int count, double range[2])
@@ -34,31 +24,44 @@ static void range_of(const double *value, int count, double range[2])
             range[0] = fmin(range[0], value[i]);
             range[1] = fmax(range[1], value[i]);
         }
-    const double middle = (range[0] + range[1]) / 2, least = fmax(1e-6 * fabs(middle), 1e-6);
+    const double middle = (range[0] + range[1]) / 2, least = fmax(1e-5 * fabs(middle), 1e-6);
     if (range[1] - range[0] < 2 * least) {
         range[0] = middle - least;
         range[1] = middle + least;
     }
 }
 
+enum { CHARACTER = 6 }; /* width of one in a number */
+
+static void upright_tick(Text *out, const char *class, double at, const char *number)
+{
+    text_print(out, "<path class=\"%s\" d=\"M%d %.1fH%d\"/><text x=\"%d\" y=\"%.1f\" text-anchor=\"end\">%s</text>\n",
+               class, LEFT, at, WIDTH - RIGHT, LEFT - 4, at + 3, number);
+}
+
+/* Below its line, or as far left of that as the picture's edge asks for. */
+static void level_tick(Text *out, const char *class, double at, const char *number)
+{
+    const double reach = at + CHARACTER / 2.0 * (double)strlen(number), text = at - fmax(0, reach - WIDTH);
+    text_print(out,
+               "<path class=\"%s\" d=\"M%.1f %dV%d\"/><text x=\"%.1f\" y=\"%d\" text-anchor=\"middle\">%s</text>\n",
+               class, at, TOP, HEIGHT - BOTTOM, text, HEIGHT - BOTTOM + 12, number);
+}
+
+/* Ticks at round numbers, along x as many as have room side by side. */
 static void ticks(Text *out, const double range[2], bool upright)
 {
-    const double step = tick_step(range[1] - range[0], upright ? 5 : 6),
-                 size = upright ? HEIGHT - TOP - BOTTOM : WIDTH - LEFT - RIGHT;
-    for (double k = ceil(range[0] / step - 1e-9); k * step <= range[1] + 1e-9 * step; ++k) {
-        const double share = (k * step - range[0]) / (range[1] - range[0]);
-        const char *class = k == 0 ? "zero" : "grid";
+    const double width = range[1] - range[0], size = upright ? HEIGHT - TOP - BOTTOM : WIDTH - LEFT - RIGHT;
+    const int digits = axis_digits(range[0], range[1]), sign_point_and_space = 4;
+    const double room = CHARACTER * (digits + sign_point_and_space), most = upright ? 5 : fmin(6, size / room);
+    const double step = axis_step(width / most), rounding = 1e-9;
+    for (double k = ceil(range[0] / step - rounding); k * step <= range[1] + rounding * step; ++k) {
+        const double share = (k * step - range[0]) / width;
+        const char *number = pool_print(out->pool, "%.*g", digits, k * step + 0.0);
         if (upright)
-            text_print(
-                out, "<path class=\"%s\" d=\"M%d %.1fH%d\"/><text x=\"%d\" y=\"%.1f\" text-anchor=\"end\">%g</text>\n",
-                class, LEFT, TOP + size * (1 - share), WIDTH - RIGHT, LEFT - 4, TOP + size * (1 - share) + 3,
-                k * step + 0.0);
+            upright_tick(out, k == 0 ? "zero" : "grid", TOP + size * (1 - share), number);
         else
-            text_print(
-                out,
-                "<path class=\"%s\" d=\"M%.1f %dV%d\"/><text x=\"%.1f\" y=\"%d\" text-anchor=\"middle\">%g</text>\n",
-                class, LEFT + size * share, TOP, HEIGHT - BOTTOM, LEFT + size * share, HEIGHT - BOTTOM + 12,
-                k * step + 0.0);
+            level_tick(out, k == 0 ? "zero" : "grid", LEFT + size * share, number);
     }
 }
 
