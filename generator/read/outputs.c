@@ -276,14 +276,21 @@ static bool is_watched(const Model *model, OutputType type, int wheel)
     return false;
 }
 
+/* A copy of a model with room for more outputs. */
+static Model *copy_with_room(Pool *pool, const Model *model, int more)
+{
+    Model *out = pool_alloc(pool, sizeof *out);
+    *out = *model;
+    out->output = pool_alloc(pool, sizeof *out->output * (size_t)(model->outputs + more + 1));
+    for (int i = 0; i < model->outputs; ++i)
+        output_copy(model, &out->output[i], &model->output[i]);
+    return out;
+}
+
 const Model *model_watch_wheels(Pool *pool, const Model *model)
 {
     static const OutputType wanted[] = {OUTPUT_WHEEL, OUTPUT_TIRE, OUTPUT_CONTACT};
-    Model *out = pool_alloc(pool, sizeof *out);
-    *out = *model;
-    out->output = pool_alloc(pool, sizeof *out->output * (size_t)(model->outputs + 3 * model->wheels + 1));
-    for (int i = 0; i < model->outputs; ++i)
-        output_copy(model, &out->output[i], &model->output[i]);
+    Model *out = copy_with_room(pool, model, 3 * model->wheels);
     for (int w = 0; w < model->wheels; ++w)
         for (int k = 0; k < (model->wheel[w].tire >= 0 ? 3 : 1); ++k) {
             if (is_watched(model, wanted[k], w))
@@ -299,5 +306,27 @@ const Model *model_watch_wheels(Pool *pool, const Model *model)
             components_set(pool, model, output);
             out->output_components += output->count;
         }
+    return out;
+}
+
+const Model *model_watch_body(Pool *pool, const Model *model, int body, const double point[3])
+{
+    static const OutputType wanted[] = {OUTPUT_POSITION, OUTPUT_ACCELERATION, OUTPUT_ROLL_PITCH_YAW,
+                                        OUTPUT_ANGULAR_VELOCITY};
+    const int count = sizeof wanted / sizeof *wanted;
+    Model *out = copy_with_room(pool, model, count);
+    for (int k = 0; k < count; ++k) {
+        Output *output = &out->output[out->outputs++];
+        *output = (Output){.name = pool_print(pool, "_%s_%s", output_type_name[wanted[k]], model->body[body].name),
+                           .at = model->body[body].at,
+                           .type = wanted[k],
+                           .body = body,
+                           .point = {point[0], point[1], point[2]},
+                           .in = BODY_GROUND,
+                           .index = -1,
+                           .hidden = true};
+        components_set(pool, model, output);
+        out->output_components += output->count;
+    }
     return out;
 }

@@ -34,5 +34,8 @@ const Model *model_read_fixed(Pool *pool, const Model *earlier, const double *pa
 /* A copy of the model with hidden outputs of each wheel: of type wheel, and with a tire also tire and contact, unless
  * it has them. */
 const Model *model_watch_wheels(Pool *pool, const Model *model);
+/* The same with hidden outputs of a body, the last ones: place of a point in its frame, m, acceleration of that, roll,
+ * pitch and yaw, angular velocity; three each, in the world. */
+const Model *model_watch_body(Pool *pool, const Model *model, int body, const double point[3]);
 
 #endif

@@ -15,8 +15,9 @@
 
 /* ---- manoeuvre_trial.c: one run ------------------------------------------------------------------------- */
 
-/* What is recorded, SI: the place of the centre of mass of rest, carried along by the base, and its motion in the plane
- * along and across the vehicle's heading. Signs are those of ISO 8855: left, to the left and right side down count. */
+/* What is recorded, SI: the place of the centre of mass of rest, of an articulated vehicle that of its first unit,
+ * carried along by the base, and its motion in the plane along and across the vehicle's heading. Signs are those of ISO
+ * 8855: left, to the left and right side down count. */
 typedef enum Channel {
     TRIAL_TIME,
     TRIAL_STEER, /* value of the steering coordinate */
@@ -35,6 +36,13 @@ typedef enum Channel {
     TRIAL_ROLL,
     TRIAL_PITCH,
     TRIAL_LOAD, /* the smallest of the wheels' loads */
+    /* of articulated vehicles: the centre of mass of the last unit; its heading less that of the base; 0 of others */
+    TRIAL_LAST_X,
+    TRIAL_LAST_Y,
+    TRIAL_LAST_YAW_RATE,
+    TRIAL_LAST_AY,
+    TRIAL_LAST_ROLL,
+    TRIAL_ARTICULATION,
     TRIAL_CHANNELS
 } Channel;
 
@@ -55,12 +63,31 @@ typedef struct Trial {
     const char *end; /* why it could not go on; NULL: it could */
 } Trial;
 
+enum { TRIAL_OF_ONE = TRIAL_LAST_X }; /* channels of a vehicle of one unit */
+
 typedef struct TestCar TestCar;
 
 /* True: the run may end after this row, the last of the trial. */
 typedef bool TrialStop(void *context, const Trial *trial);
 /* Run a scene, with the rows of its output times. stop: NULL, to its end. Mistakes of the scene end in diag_fail. */
 Trial *trial_run(TestCar *car, const char *name, const char *scene, TrialStop *stop, void *context);
+
+/* ---- manoeuvre_units.c: articulated vehicles ------------------------------------------------------------ */
+
+/* The first unit is that of the base, the last the one that carries the rearmost axle. Unit centres are as drawn. */
+typedef struct Units {
+    double first[3]; /* centre of mass of the first one, in the axes of the base's body */
+    int body;        /* of the last one: its heaviest body with the axes of the drawing */
+    double last[3];  /* and its centre of mass, in that body's frame */
+} Units;
+
+/* The components of model_watch_body(), from its first one on. */
+enum { UNIT_POSITION = 0, UNIT_ACCELERATION = 3, UNIT_ATTITUDE = 6, UNIT_TURN = 9 };
+
+/* NULL: the vehicle has one unit, or none that a joint about the vertical parts from the rest. */
+const Units *units_find(const Sheet *sheet);
+/* The channels of the last unit in a row whose others are there. output: [12] those of model_watch_body(). */
+void units_motion(const double *output, double *row);
 
 /* ---- manoeuvre_car.c: what the vehicle can do ----------------------------------------------------------- */
 
@@ -70,7 +97,7 @@ struct TestCar {
     Sheet sheet;        /* at rest */
     const Engine *engine;
     const gic_model *code;  /* the engine's, later maybe faster one */
-    double com[3];          /* centre of mass at rest, in the axes of the base's body */
+    double com[3];          /* centre of mass at rest, or that of the first unit, in the axes of the base's body */
     int accelerator, brake; /* inputs of unit 1 of these names; -1: the model has none */
     const KcAxle *axle;     /* that is steered; NULL: none, `unsteered` says why */
     const char *unsteered;
@@ -80,6 +107,8 @@ struct TestCar {
     double range[2];     /* of the road-wheel angle */
     int *load;           /* [wheels] components of outputs */
     int *travel;         /* [wheels] coordinates that move them up and down; -1: none */
+    const Units *units;  /* NULL: it is one */
+    int unit;            /* the first component of the outputs of the last one */
     double output_step;  /* s between rows */
     const char *rest;    /* place and coordinates at rest, as keys of a scene's `initial` */
     double settled;      /* the speed that was kept last; 0: none */
@@ -221,7 +250,8 @@ typedef struct Response {
     double gain, phase, coherence;
 } Response;
 typedef Response RespondAt(const void *context, Channel channel, double frequency);
-/* Rows and curves of yaw rate, lateral acceleration, roll and side slip up to a frequency, Hz. */
+/* Rows and curves of yaw rate, lateral acceleration, roll and side slip up to a frequency, Hz; of articulated vehicles
+ * also those of the last unit by the first one. */
 void manoeuvre_responses(Manoeuvre *manoeuvre, RespondAt *at, const void *context, double to);
 /* manoeuvre_linear.c: the same by the linear model straight ahead at a speed, m/s; NULL: there is none. */
 typedef struct LinearResponse LinearResponse;
@@ -230,6 +260,12 @@ const LinearResponse *linear_response(const TestCar *car, double speed);
 Response linear_response_at(const void *context, Channel channel, double frequency);
 /* The amplitude, rad, of steering whose lateral acceleration is value[1] steadily, by the linear model at value[0]. */
 double manoeuvre_linear_angle(Manoeuvre *manoeuvre);
+
+/* manoeuvre_units.c: how an articulated vehicle follows steering that begins and ends straight ahead, from a time to
+ * another one, s: rows of peaks of the last unit by those of the first, and of the damping after it. */
+void manoeuvre_rearward(Manoeuvre *manoeuvre, const Trial *trial, double from, double to);
+/* True: the vehicle has units of which such rows can be made. False: it is one, or a note says why there are none. */
+bool manoeuvre_has_units(Manoeuvre *manoeuvre);
 
 /* manoeuvre_straight.c: the rows of a run whose pedal moves at `begin`, s, as asked for from a speed, m/s. */
 void manoeuvre_braked(Manoeuvre *manoeuvre, const Trial *trial, double begin, double speed);

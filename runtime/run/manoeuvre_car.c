@@ -99,6 +99,12 @@ TestCar *car_open(Pool *pool, const Model *model, const Request *request)
     TestCar *car = pool_alloc(pool, sizeof *car);
     const double *e = model->body[BODY_BASE].euler;
     *car = (TestCar){.pool = pool, .request = request, .sheet = sheet_open(pool, model, NULL, request->solve)};
+    car->units = units_find(&car->sheet);
+    if (car->units) { /* the linear model also tells how the last unit moves */
+        car->unit = model->output_components;
+        model = model_watch_body(pool, model, car->units->body, car->units->last);
+        car->sheet = sheet_open(pool, model, NULL, request->solve);
+    }
     car->model = model_watch_wheels(pool, model);
     find_loads(car);
     find_travel(car);
@@ -110,6 +116,8 @@ TestCar *car_open(Pool *pool, const Model *model, const Request *request)
             car_refuse(car, "give its wheels the key `tire`",
                        pool_print(pool, "wheel '%s' has no tire", model->wheel[w].name));
     sub3(car->sheet.com, model->body[BODY_BASE].position, car->com);
+    if (car->units)
+        copy3(car->units->first, car->com);
     car->accelerator = pedal(model, "accelerator");
     car->brake = pedal(model, "brake");
     find_steering(car);

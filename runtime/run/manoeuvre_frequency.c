@@ -52,15 +52,25 @@ static Response response_at(const void *context, Channel channel, double frequen
     return (Response){size / xx, atan2(xy[1], xy[0]), size * size / (xx * yy)};
 }
 
-static void add_channel(Manoeuvre *m, RespondAt *at_frequency, const void *context, const LinearResponse *linear,
-                        double to, Channel channel, const char *title, const char *unit)
+/* The responses of a run, and beside them those of the linear model, whose context may be NULL: there is none. */
+typedef struct Responding {
+    RespondAt *at, *linear_at;
+    const void *context, *linear;
+} Responding;
+
+static Response by_linear(const Responding *of, Channel channel, double frequency)
 {
-    const char *name = trial_signal[channel].name;
+    return of->linear ? of->linear_at(of->linear, channel, frequency) : (Response){NAN, NAN, NAN};
+}
+
+static void add_channel(Manoeuvre *m, const Responding *of, double to, Channel channel, const char *name,
+                        const char *title, const char *unit)
+{
     for (size_t i = 0; i < sizeof table / sizeof *table; ++i) {
         const double f = table[i];
         if (f > to)
             break;
-        const Response r = at_frequency(context, channel, f);
+        const Response r = of->at(of->context, channel, f);
         const char *at = pool_print(m->pool, "%s.at_%g", name, f);
         sheet_add(m->result, i ? NULL : title, pool_print(m->pool, "%s.gain", at),
                   pool_print(m->pool, "Gain at %g Hz", f), unit, r.gain);
@@ -68,7 +78,7 @@ static void add_channel(Manoeuvre *m, RespondAt *at_frequency, const void *conte
                   r.phase);
         sheet_add(m->result, NULL, pool_print(m->pool, "%s.coherence", at),
                   pool_print(m->pool, "Coherence at %g Hz", f), "1", r.coherence);
-        const Response l = linear ? linear_response_at(linear, channel, f) : (Response){NAN, NAN, NAN};
+        const Response l = by_linear(of, channel, f);
         if (isnan(l.gain))
             continue;
         sheet_add(m->result, NULL, pool_print(m->pool, "%s.linear.gain", at),
@@ -79,8 +89,8 @@ static void add_channel(Manoeuvre *m, RespondAt *at_frequency, const void *conte
 }
 
 /* Gain and phase over frequency, unwrapped, and the frequencies of the largest gain and of a phase of -45 degrees. */
-static void add_curves(Manoeuvre *m, RespondAt *at_frequency, const void *context, const LinearResponse *linear,
-                       double to, Channel channel, const char *title, const char *unit)
+static void add_curves(Manoeuvre *m, const Responding *of, double to, Channel channel, const char *name,
+                       const char *title, const char *unit)
 {
     enum { CURVES = 2 };
     double *x = pool_alloc(m->pool, CURVE * sizeof *x), *gain = pool_alloc(m->pool, CURVES * CURVE * sizeof *gain);
@@ -90,18 +100,17 @@ static void add_curves(Manoeuvre *m, RespondAt *at_frequency, const void *contex
     double lag = NAN;
     for (int i = 0; i < CURVE; ++i) {
         x[i] = table[0] + (to - table[0]) * i / (CURVE - 1);
-        const Response r = at_frequency(context, channel, x[i]);
+        const Response r = of->at(of->context, channel, x[i]);
         gain[i] = r.gain;
         phase[i] = i ? phase[i - 1] + remainder(r.phase - phase[i - 1], 2 * pi) : r.phase;
         shown[i] = phase[i] * 180 / pi;
-        const Response l = linear ? linear_response_at(linear, channel, x[i]) : (Response){NAN, NAN, NAN};
+        const Response l = by_linear(of, channel, x[i]);
         gain[CURVE + i] = l.gain; /* its phase is drawn beside that of the run, whatever whole turns are between */
         shown[CURVE + i] = shown[i] + remainder(l.phase - phase[i], 2 * pi) * 180 / pi;
         most = gain[i] > gain[most] ? i : most;
         if (isnan(lag) && i && phase[i] <= -pi / 4 && phase[i - 1] > -pi / 4)
             lag = x[i - 1] + (x[i] - x[i - 1]) * (-pi / 4 - phase[i - 1]) / (phase[i] - phase[i - 1]);
     }
-    const char *name = trial_signal[channel].name;
     if (most > 0 && most < CURVE - 1)
         sheet_add(m->result, NULL, pool_print(m->pool, "%s.peak_frequency", name), "Frequency of the largest gain",
                   "Hz", x[most]);
@@ -111,6 +120,48 @@ static void add_curves(Manoeuvre *m, RespondAt *at_frequency, const void *contex
     *POOL_PUSH(m->pool, m->table, m->tables) = (ManoeuvreTable){title, unit, "frequency, Hz", CURVE, CURVES, x, gain};
     *POOL_PUSH(m->pool, m->table, m->tables) =
         (ManoeuvreTable){pool_print(m->pool, "%s: phase", title), "deg", "frequency, Hz", CURVE, CURVES, x, shown};
+}
+
+/* ---- the last unit by the first one ---------------------------------------------------------------------- */
+
+/* The response of a channel of the last unit by that of the first one, from those of both by steering. */
+static Response over_first(RespondAt *at, const void *context, Channel channel, double frequency)
+{
+    const Channel of_first = channel == TRIAL_LAST_AY ? TRIAL_AY : TRIAL_YAW_RATE;
+    const Response behind = at(context, channel, frequency), ahead = at(context, of_first, frequency);
+    return (Response){behind.gain / ahead.gain, remainder(behind.phase - ahead.phase, 2 * pi),
+                      fmin(behind.coherence, ahead.coherence)};
+}
+
+static Response rearward_at(const void *context, Channel channel, double frequency)
+{
+    const Responding *by_steering = context;
+    return over_first(by_steering->at, by_steering->context, channel, frequency);
+}
+
+static Response linear_rearward_at(const void *context, Channel channel, double frequency)
+{
+    const Responding *by_steering = context;
+    return over_first(by_steering->linear_at, by_steering->linear, channel, frequency);
+}
+
+static void add_rearward(Manoeuvre *m, const Responding *by_steering, double to)
+{
+    static const struct {
+        Channel channel;
+        const char *name, *title;
+    } of[] = {{TRIAL_LAST_AY, "rearward.ay", "Lateral acceleration, last unit by the first"},
+              {TRIAL_LAST_YAW_RATE, "rearward.yaw_rate", "Yaw rate, last unit by the first"}};
+    const Responding ratio = {rearward_at, linear_rearward_at, by_steering, by_steering->linear ? by_steering : NULL};
+    for (size_t i = 0; i < sizeof of / sizeof *of; ++i) {
+        add_channel(m, &ratio, to, of[i].channel, of[i].name, of[i].title, "1");
+        add_curves(m, &ratio, to, of[i].channel, of[i].name, of[i].title, "1");
+        const double *gain = m->table[m->tables - 2].y;
+        double most = 0;
+        for (int k = 0; k < CURVE; ++k)
+            most = fmax(most, gain[k]);
+        sheet_add(m->result, NULL, pool_print(m->pool, "%s.peak", of[i].name), "Largest gain", "1", most);
+    }
 }
 
 void manoeuvre_responses(Manoeuvre *m, RespondAt *at, const void *context, double to)
@@ -123,11 +174,14 @@ void manoeuvre_responses(Manoeuvre *m, RespondAt *at, const void *context, doubl
               {TRIAL_ROLL, "Roll angle by the steer angle", "1"},
               {TRIAL_SIDESLIP, "Side slip by the steer angle", "1"}};
     static const Channel over[] = {TRIAL_ANGLE, TRIAL_AY, TRIAL_SPEED};
-    const LinearResponse *linear = linear_response(m->car, m->value[0]);
+    const Responding by_steering = {at, linear_response_at, context, linear_response(m->car, m->value[0])};
     for (size_t i = 0; i < sizeof of / sizeof *of; ++i) {
-        add_channel(m, at, context, linear, to, of[i].channel, of[i].title, of[i].unit);
-        add_curves(m, at, context, linear, to, of[i].channel, of[i].title, of[i].unit);
+        const char *name = trial_signal[of[i].channel].name;
+        add_channel(m, &by_steering, to, of[i].channel, name, of[i].title, of[i].unit);
+        add_curves(m, &by_steering, to, of[i].channel, name, of[i].title, of[i].unit);
     }
+    if (manoeuvre_has_units(m))
+        add_rearward(m, &by_steering, to);
     manoeuvre_draw(m, sizeof over / sizeof *over, over);
 }
 

@@ -49,7 +49,11 @@ Response linear_response_at(const void *context, Channel channel, double frequen
     const double omega = 2 * pi * frequency;
     if (!sheet_motion_at(r->motion, omega, r->re, r->im))
         return (Response){NAN, NAN, NAN};
-    const double re = channel_of(r, channel, r->re, r->im, -1, omega);
-    const double im = channel_of(r, channel, r->im, r->re, 1, omega), angle = r->car->angle;
-    return (Response){hypot(re, im) / fabs(angle), atan2(im * angle, re * angle), 1};
+    const double angle = r->car->angle;
+    double is[2] = {channel_of(r, channel, r->re, r->im, -1, omega), channel_of(r, channel, r->im, r->re, 1, omega)};
+    if (channel == TRIAL_LAST_AY || channel == TRIAL_LAST_YAW_RATE)
+        sheet_motion_output(r->motion,
+                            r->car->unit + (channel == TRIAL_LAST_AY ? UNIT_ACCELERATION + 1 : UNIT_TURN + 2), omega,
+                            r->re, r->im, is);
+    return (Response){hypot(is[0], is[1]) / fabs(angle), atan2(is[1] * angle, is[0] * angle), 1};
 }

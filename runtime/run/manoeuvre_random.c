@@ -14,9 +14,10 @@ static const double pi = 3.141592653589793;
 static const double begin = 4, fade = 2; /* s straight ahead; in which it begins and ends */
 static const double lowest = 0.1;        /* Hz */
 static const double peak = 4;            /* largest values over the rms that are reckoned with */
-enum { SEGMENT = 2048, LINES = SEGMENT / 2, BESIDE = 1, CHANNELS = 4 };
+enum { SEGMENT = 2048, LINES = SEGMENT / 2, BESIDE = 1, CHANNELS = 6 };
 
-static const Channel followed[CHANNELS] = {TRIAL_YAW_RATE, TRIAL_AY, TRIAL_ROLL, TRIAL_SIDESLIP};
+static const Channel followed[CHANNELS] = {TRIAL_YAW_RATE, TRIAL_AY,      TRIAL_ROLL,
+                                           TRIAL_SIDESLIP, TRIAL_LAST_AY, TRIAL_LAST_YAW_RATE};
 
 /* ---- the steering --------------------------------------------------------------------------------------- */
 

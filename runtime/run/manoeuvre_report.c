@@ -237,10 +237,11 @@ static void check_order(Pool *pool, const ManoeuvreKind *kind, const double *val
 static void write_trace(const Manoeuvre *m, const char *path)
 {
     const Model *model = m->car->model;
+    const int channels = m->car->units ? TRIAL_CHANNELS : TRIAL_OF_ONE;
     interrupt_hold();
     Csv csv = csv_open(m->pool, path);
     csv_name(&csv, "trial", NULL);
-    for (int c = 0; c < TRIAL_CHANNELS; ++c)
+    for (int c = 0; c < channels; ++c)
         csv_name(&csv, trial_signal[c].name,
                  c != TRIAL_STEER       ? trial_signal[c].unit
                  : m->car->steering < 0 ? "1"
@@ -257,7 +258,7 @@ static void write_trace(const Manoeuvre *m, const char *path)
         for (int i = 0; i < m->trial[t]->rows; ++i) {
             csv_name(&csv, m->trial[t]->name, NULL);
             csv_time(&csv, m->trial[t]->row[i][TRIAL_TIME]);
-            for (int c = 1; c < TRIAL_CHANNELS; ++c)
+            for (int c = 1; c < channels; ++c)
                 csv_number(&csv, m->trial[t]->row[i][c]);
             for (int k = 0; k < model->wheels * TRIAL_OF_WHEEL; ++k)
                 csv_number(&csv, m->trial[t]->wheel[i * model->wheels * TRIAL_OF_WHEEL + k]);

@@ -6,6 +6,7 @@
 
 static const double pi = 3.141592653589793;
 static const double begin = 4, after = 3, spacing = 0.01; /* s */
+static const double swinging = 10;                        /* s after it, of an articulated vehicle */
 
 /* Of a sine of *context, Hz. */
 static double wave(const void *context, double time)
@@ -18,8 +19,9 @@ static const Trial *drive(Manoeuvre *m, double angle, const char *name)
 {
     TestCar *car = m->car;
     const double *frequency = &m->value[2], end = begin + 1 / *frequency;
+    const double still = car->units ? swinging : after;
     const char *more = manoeuvre_steering(m, begin, end, fmin(spacing, 0.02 / *frequency), angle, wave, frequency);
-    return trial_run(car, name, car_scene(car, end + after, m->value[0], true, more), NULL, NULL);
+    return trial_run(car, name, car_scene(car, end + still, m->value[0], true, more), NULL, NULL);
 }
 
 static double first_peak(const Trial *trial)
@@ -58,6 +60,7 @@ static void add_channel(Manoeuvre *m, const Trial *trial, double sign, Channel c
 void manoeuvre_sine(Manoeuvre *m)
 {
     static const Channel over[] = {TRIAL_ANGLE, TRIAL_YAW_RATE, TRIAL_AY, TRIAL_ROLL, TRIAL_SIDESLIP, TRIAL_Y};
+    static const Channel of_units[] = {TRIAL_LAST_AY, TRIAL_LAST_YAW_RATE, TRIAL_ARTICULATION};
     manoeuvre_begin(m);
     const double angle =
         manoeuvre_find_angle(m, m->value[1], &(AngleSearch){drive, first_peak, "a sine of the steering", "reaches"});
@@ -73,6 +76,10 @@ void manoeuvre_sine(Manoeuvre *m)
         add_channel(m, trial, side, TRIAL_SIDESLIP, "Side slip", "1");
         sheet_add_way(m->result, NULL, pool_print(m->pool, "%s.aside", trial->name), "Aside at the end",
                       side * (trial->row[trial->rows - 1][TRIAL_Y] - trial_at(trial, TRIAL_Y, begin)));
+        if (m->car->units)
+            manoeuvre_rearward(m, trial, begin, begin + 1 / m->value[2]);
     }
     manoeuvre_draw(m, sizeof over / sizeof *over, over);
+    if (manoeuvre_has_units(m))
+        manoeuvre_draw(m, sizeof of_units / sizeof *of_units, of_units);
 }

@@ -27,7 +27,13 @@ const gic_signal trial_signal[TRIAL_CHANNELS] = {[TRIAL_TIME] = {"time", "s"},
                                                  [TRIAL_AZ] = {"az", "m/s^2"},
                                                  [TRIAL_ROLL] = {"roll", "rad"},
                                                  [TRIAL_PITCH] = {"pitch", "rad"},
-                                                 [TRIAL_LOAD] = {"least_load", "N"}};
+                                                 [TRIAL_LOAD] = {"least_load", "N"},
+                                                 [TRIAL_LAST_X] = {"last.x", "m"},
+                                                 [TRIAL_LAST_Y] = {"last.y", "m"},
+                                                 [TRIAL_LAST_YAW_RATE] = {"last.yaw_rate", "rad/s"},
+                                                 [TRIAL_LAST_AY] = {"last.ay", "m/s^2"},
+                                                 [TRIAL_LAST_ROLL] = {"last.roll", "rad"},
+                                                 [TRIAL_ARTICULATION] = {"articulation", "rad"}};
 
 static const double patience = 0.5; /* s of run time, after which faster code is worth its compiler */
 
@@ -66,7 +72,7 @@ static void centre(const TestCar *car, const double *state, const double *rate, 
     add_scaled3(1, turned, a);
 }
 
-static void motion(const Way *way, double *row)
+static void motion(const Way *way, const double *output, double *row)
 {
     const TestCar *car = way->car;
     const Trial *trial = way->trial;
@@ -87,6 +93,10 @@ static void motion(const Way *way, double *row)
     row[TRIAL_AZ] = a[2];
     row[TRIAL_ROLL] = atan2(A[7], A[8]);
     row[TRIAL_PITCH] = -asin(fmax(-1, fmin(1, A[6])));
+    for (int k = TRIAL_OF_ONE; k < TRIAL_CHANNELS; ++k)
+        row[k] = 0;
+    if (car->units)
+        units_motion(output + car->unit, row);
 }
 
 /* A row at the present time. Returns a status. */
@@ -122,7 +132,7 @@ static int record(Way *way)
         of[TRIAL_WHEEL_TRAVEL] = travel < 0 ? 0 : way->state[travel];
         row[TRIAL_LOAD] = fmin(row[TRIAL_LOAD], of[TRIAL_WHEEL_LOAD]);
     }
-    motion(way, row);
+    motion(way, output, row);
     ++trial->rows;
     return GIC_OK;
 }

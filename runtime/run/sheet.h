@@ -73,6 +73,9 @@ int sheet_set_in_motion(const Sheet *sheet, Instance *self, double speed);
 typedef struct SheetMotion SheetMotion;
 const SheetMotion *sheet_motion(const Sheet *sheet, int steer, double speed);
 bool sheet_motion_at(const SheetMotion *motion, double omega, double *re, double *im);
+/* The change of component `output` of the model's outputs, re and im, in the motion z of sheet_motion_at(). */
+void sheet_motion_output(const SheetMotion *motion, int output, double omega, const double *re, const double *im,
+                         double out[2]);
 /* sheet_report.c: all rows of a sheet. */
 Sheet sheet_study(Pool *pool, const Model *model, const Scene *scene, const Request *request);
 /* sheet_report.c: --sheet: a table, or CSV or a page by the ending of the file. */

@@ -13,6 +13,7 @@ struct SheetMotion {
     const Sheet *sheet;
     int n, *kept;       /* motions but places along which nothing changes, and the speed */
     double *A, *B;      /* [n][n], [OF_INPUT][n] */
+    double *C, *D;      /* of outputs: [n][outputs], [OF_INPUT][outputs] */
     double *work, *rhs; /* [2 n][2 n], [2 n] */
 };
 
@@ -23,6 +24,7 @@ const SheetMotion *sheet_motion(const Sheet *sheet, int steer, double speed)
     const int all = linear->count;
     const size_t size = (size_t)all * sizeof(double);
     Instance *self = (Instance *)(void *)instance_new(sheet->pool, sheet->found->engine);
+    const int outputs = sheet->model->output_components;
     double *f = pool_alloc(sheet->pool, size), *A = pool_alloc(sheet->pool, (size_t)all * size), *b[OF_INPUT];
     SheetMotion *motion = pool_alloc(sheet->pool, sizeof *motion);
     *motion = (SheetMotion){.sheet = sheet, .kept = pool_alloc(sheet->pool, (size_t)all * sizeof *motion->kept)};
@@ -30,16 +32,22 @@ const SheetMotion *sheet_motion(const Sheet *sheet, int steer, double speed)
     int status = sheet_set_in_motion(sheet, self, speed);
     if (status == GIC_OK)
         status = linearize(linear, self, f, A);
+    motion->C = pool_alloc(sheet->pool, (size_t)outputs * (size + sizeof(double)));
+    motion->D = pool_alloc(sheet->pool, (OF_INPUT * (size_t)outputs + 1) * sizeof *motion->D);
+    bool jump;
     for (int k = 0; k < OF_INPUT && status == GIC_OK; ++k) {
-        bool jump;
         b[k] = pool_alloc(sheet->pool, size);
-        status = linear_column(linear, self, LINEAR_INPUT, code->coordinate_input[steer] + k, b[k], 0, NULL, &jump);
+        status = linear_column(linear, self, LINEAR_INPUT, code->coordinate_input[steer] + k, b[k], outputs,
+                               motion->D + k * outputs, &jump);
     }
-    if (status != GIC_OK)
-        return NULL;
     for (int i = 0; i < all; ++i)
         if (i != X && i != Y && i != YAW && i != linear->places + X)
             motion->kept[motion->n++] = i;
+    for (int j = 0; j < motion->n && status == GIC_OK; ++j)
+        status =
+            linear_column(linear, self, LINEAR_MOTION, motion->kept[j], f, outputs, motion->C + j * outputs, &jump);
+    if (status != GIC_OK)
+        return NULL;
     const size_t n = (size_t)motion->n;
     motion->A = pool_alloc(sheet->pool, n * n * sizeof *motion->A);
     motion->B = pool_alloc(sheet->pool, OF_INPUT * n * sizeof *motion->B);
@@ -78,4 +86,16 @@ bool sheet_motion_at(const SheetMotion *motion, double omega, double *re, double
         im[motion->kept[i]] = b[n + i];
     }
     return true;
+}
+
+void sheet_motion_output(const SheetMotion *motion, int output, double omega, const double *re, const double *im,
+                         double out[2])
+{
+    const int outputs = motion->sheet->model->output_components;
+    out[0] = motion->D[output] - omega * omega * motion->D[2 * outputs + output];
+    out[1] = omega * motion->D[outputs + output];
+    for (int j = 0; j < motion->n; ++j) {
+        out[0] += motion->C[j * outputs + output] * re[motion->kept[j]];
+        out[1] += motion->C[j * outputs + output] * im[motion->kept[j]];
+    }
 }

@@ -12,6 +12,33 @@ linear=$root/tests/data/manoeuvre/linear.veh
 /usr/bin/python3 -B "$root/tests/vehicle/manoeuvres.py" "$gicrun" "$linear" "$work" >"$work/said" 2>&1
 verdict $? "the vehicle with linear tires"
 
+/usr/bin/python3 -B "$root/tests/vehicle/two_units.py" "$gicrun" "$root/tests/data/manoeuvre/two_units.veh" "$work" >"$work/said" 2>&1
+verdict $? 'two units with linear tires'
+
+# ---- articulated vehicles; one of one unit has no such rows
+two=$root/tests/data/manoeuvre/two_units.veh
+run --manoeuvre sine "$models/semitrailer.veh" speed=20 ay=1 frequency=0.4 --report "$work/page.html" --trace "$work/trace.csv"
+check 'a semitrailer: a sine' exits 0
+check 'it amplifies' prints 'Rearward amplification, lateral acceleration'
+check 'no number is none' sh -c "! grep -qiE '[^a-z](nan|inf)[^a-z]' '$work/out' '$work/trace.csv' '$work/page.html'"
+check 'its last unit is in the time histories' grep -q 'last.x \[m\],.*,articulation \[rad\]' "$work/trace.csv"
+run --manoeuvre frequency "$models/semitrailer.veh" speed=20 duration=20 -q -o "$work/table.csv"
+check 'a semitrailer: a sweep' exits 0
+check 'it amplifies by frequency' sh -c "grep -q '^rearward.ay.peak,' '$work/table.csv' && grep -q '^rearward.ay.at_0.5.linear.gain,' '$work/table.csv'"
+run --manoeuvre sine "$models/semitrailer.veh" speed=20 ay=7
+check 'a semitrailer that is asked for too much' exits 1
+check 'it is told how' says 'tips over\|no sine of the steering reaches'
+run --manoeuvre sine "$models/semitrailer.veh" speed=45 ay=1
+check 'a semitrailer that is too slow' says 'does not keep 45 m/s.*'
+sed 's/damping: 400/damping: 40000/' "$two" >"$work/stiff.veh"
+run --manoeuvre sine "$work/stiff.veh" speed=15 ay=0.5
+check 'units that do not swing' prints 'articulation.damping: the units do not swing against each other three times'
+sed -e 's/drawbar: {/&orientation: {x: [0, 1, 0], z: [0, 0, 1]}, /' -e 's/cabin: {/&orientation: {x: [0, 1, 0], z: [0, 0, 1]}, /' -e 's/ behind_l: {m/ behind_l: {orientation: {x: [0, 1, 0], z: [0, 0, 1]}, m/' "$two" >"$work/turned.veh"
+run --manoeuvre sine "$work/turned.veh" speed=20 ay=0.5
+check 'units that are not found' prints 'not there: rearward amplification: no joint about the vertical'
+run --manoeuvre sine "$linear" speed=20 ay=0.5 --trace "$work/trace.csv"
+check 'one unit' sh -c "! grep -q 'Rearward' '$work/out' && ! grep -q 'articulation' '$work/trace.csv'"
+
 # ---- the complete vehicle
 for name in 'steady-speed speed=16' 'steady-radius radius=30' 'step-steer speed=16' 'ramp-steer speed=16' 'sine speed=16' 'sine-dwell speed=16' \
     'frequency speed=16 duration=20' 'random speed=16 duration=30' lane-change 'lane-change part=1' 'lift-off speed=16' 'turn-braking speed=16' \
