@@ -36,6 +36,11 @@ static const char help[] =
     "                     time_of_min, time_of_max, crossing or overshoot of a formula of outputs,\n"
     "                     inputs and parameters, over output times; rms(FORMULA, WEIGHT) and\n"
     "                     crossing(FORMULA, LEVEL), too: models/SCENE.md section 6\n"
+    "      --report FILE  a page: response surfaces of the metrics, of second order by least squares,\n"
+    "                     with their errors; and fronts\n"
+    "      --front min:NAME,max:NAME,...\n"
+    "                     on the page: the Pareto front of metrics that are to be small or large;\n"
+    "                     given as often as one likes\n"
     "      --seed NUMBER  of the random numbers; the same seed, the same runs; default: 1\n"
     "  -o, --output FILE  results as CSV, or as HDF5 if FILE ends in .h5; default: sweep.csv.\n"
     "                     Finished runs are kept in FILE.journal: the same command goes on\n"
@@ -67,9 +72,9 @@ typedef struct Asked {
     const char *model;
     gicl_options options;
     gicl_sweep sweep;
-    const char **vary, **metric;  /* [count of words] */
-    const char *planned, *merged; /* folders of --slurm and --merge; NULL: not asked for */
-    double chunk;                 /* s; 0: not given */
+    const char **vary, **metric, **front; /* [count of words] */
+    const char *planned, *merged;         /* folders of --slurm and --merge; NULL: not asked for */
+    double chunk;                         /* s; 0: not given */
     bool series, quiet;
 } Asked;
 
@@ -83,6 +88,12 @@ static void read_metric(void *asked, char *word)
 {
     Asked *a = asked;
     a->metric[a->sweep.metrics++] = word;
+}
+
+static void read_front(void *asked, char *word)
+{
+    Asked *a = asked;
+    a->front[a->sweep.fronts++] = word;
 }
 
 static void read_latin(void *asked, char *word)
@@ -152,6 +163,8 @@ static void read_command_line(Asked *asked, int count, char **word)
         {"latin", .read = read_latin},
         {"sobol", .read = read_sobol},
         {"metric", .read = read_metric},
+        {"report", .text = &sweep->report},
+        {"front", .read = read_front},
         {"seed", .read = read_seed},
         {"output", 'o', .text = &sweep->results},
         {"series", .on = &asked->series},
@@ -167,7 +180,7 @@ static void read_command_line(Asked *asked, int count, char **word)
     };
     const int first = options_read("gicsweep", (const char *const[]){help, NULL}, count, word, option,
                                    (int)(sizeof option / sizeof *option), asked, NULL);
-    if (asked->merged && (first < count || sweep->varied || sweep->part || asked->planned))
+    if (asked->merged && (first < count || sweep->varied || sweep->part || asked->planned || sweep->report))
         usage_fail("gicsweep", "--merge takes -o alone; all else is in the folder", asked->merged);
     sweep->quiet = asked->quiet;
     sweep->series = asked->series;
@@ -195,6 +208,14 @@ static void read_command_line(Asked *asked, int count, char **word)
         usage_fail("gicsweep", "--latin or --sobol, not both", NULL);
     if (sweep->sobol && !sweep->metrics)
         usage_fail("gicsweep", "--sobol needs metrics: --metric NAME=FUNCTION(FORMULA)", NULL);
+    if (sweep->fronts && !sweep->report)
+        usage_fail("gicsweep", "--front goes onto a page: --report FILE", NULL);
+    if (sweep->report && !sweep->metrics)
+        usage_fail("gicsweep", "--report needs metrics: --metric NAME=FUNCTION(FORMULA)", NULL);
+    if (sweep->report && (sweep->part || asked->planned))
+        usage_fail("gicsweep", "--report is of a sweep that is not in parts:", sweep->report);
+    if (sweep->report && (file_is_special(sweep->report) || !strcmp(sweep->report, "-")))
+        usage_fail("gicsweep", "a report goes into a file, not to", sweep->report);
     if (asked->series && !sweep->part && !asked->planned && !path_ends(sweep->results, ".h5") &&
         !path_ends(sweep->results, ".hdf5"))
         usage_fail("gicsweep", "--series needs HDF5: -o FILE.h5, not", sweep->results);
@@ -202,6 +223,7 @@ static void read_command_line(Asked *asked, int count, char **word)
     sweep->scene = word[first + 1];
     sweep->vary = asked->vary;
     sweep->metric = asked->metric;
+    sweep->front = asked->front;
 }
 
 /* The words that make one part, but for --shard and -o. Returns their number. */
@@ -251,12 +273,13 @@ static int command_of(const Asked *asked, char *const *called, const char **word
 int main(int count, char **word)
 {
     enum { OTHERS = 16 };
-    const char *vary[count], *metric[count], *command[2 * count + OTHERS];
+    const char *vary[count], *metric[count], *front[count], *command[2 * count + OTHERS];
     enum { CHUNK = 600 /* s */ };
     Asked asked = {.options = {.size = sizeof asked.options},
                    .sweep = {.size = sizeof asked.sweep, .seed = 1},
                    .vary = vary,
-                   .metric = metric};
+                   .metric = metric,
+                   .front = front};
     read_command_line(&asked, count, word);
     const gicl_listener terminal = {
         .size = sizeof terminal, .program = program_place().source->path, .hear = terminal_hear, .signals = 1};

@@ -307,6 +307,11 @@ typedef struct gicl_sweep {
     /* base points of Sobol' indices of the metrics, each `varied` + 2 runs; the table of indices is a message,
      * GICL_TEXT. 0: none */
     int64_t sobol;
+    /* a page with response surfaces of the metrics, and with their fronts min:NAME,max:NAME,...; of all runs, not in
+     * parts. NULL: none */
+    const char *report;
+    const char *const *front; /* [fronts] */
+    int fronts;
 } gicl_sweep;
 
 /* Runs are made in $OMP_NUM_THREADS processes, by default one for each processor. *result (result NULL: not wanted):

@@ -56,6 +56,9 @@ static void sweep(void *context)
                             .sobol = asked->sobol,
                             .seed = asked->seed,
                             .series = asked->series,
+                            .report = asked->report,
+                            .front = asked->front,
+                            .fronts = asked->fronts,
                             .part = asked->part,
                             .parts = asked->parts,
                             .quiet = asked->quiet};
@@ -110,6 +113,13 @@ static int check(const gicl_sweep *asked, gicl_messages *said)
     if (asked->series && !asked->parts && !table_is_hdf5(asked->results))
         return call_wrong(said, "name a file that ends in .h5", "series over time go into HDF5, not into '%s'",
                           asked->results);
+    if (asked->fronts < 0 || (asked->fronts && (!asked->front || !asked->report)))
+        return call_wrong(said, NULL, "'fronts' is the number of words in 'front', which go onto the page 'report'");
+    if (asked->report && (!asked->metrics || asked->parts))
+        return call_wrong(said, NULL, "a report is of metrics, and of a sweep that is not in parts");
+    for (int f = 0; f < asked->fronts; ++f)
+        if (!asked->front[f])
+            return call_wrong(said, NULL, "number %d of the fronts is NULL", f);
     for (int m = 0; m < asked->metrics; ++m)
         if (!asked->metric[m])
             return call_wrong(said, NULL, "number %d of the metrics is NULL", m);

@@ -15,6 +15,7 @@
 #include "run/engines.h"
 #include "run/run.h"
 #include "scene/scene.h"
+#include "sweep/report.h"
 #include "sweep/sweep.h"
 
 #include <dlfcn.h>
@@ -272,6 +273,35 @@ static void open_sweep(Sweep *sweep, const SweepRequest *request, bool planned, 
         table_check(pool, request->results, sweep->form);
 }
 
+/* What the page shall have, before the runs: mistakes are found in seconds. */
+static SweepReport open_report(const Sweep *sweep, const SweepRequest *request)
+{
+    const SweepPlan *plan = sweep->plan;
+    Front *front = pool_alloc(sweep->pool, sizeof *front * (size_t)(request->fronts + 1));
+    if (plan->varied > SURFACE_VARIED_MOST || plan->runs > REPORT_RUNS_MOST)
+        diag_fail_call(program_place(), "leave out --report, or vary less",
+                       "a report has %d runs and %d numbers at most, "
+                       "not %lld and %d",
+                       REPORT_RUNS_MOST, SURFACE_VARIED_MOST, (long long)plan->runs, plan->varied);
+    if (files_are_one(request->report, request->results) ||
+        files_are_one(request->report, pool_print(sweep->pool, "%s.journal", request->results)))
+        diag_fail_call(program_place(), "choose another file", "--report and -o both write %s", request->report);
+    source_keep(sweep->model->source, request->report);
+    source_keep(sweep->scene->source, request->report);
+    file_check(request->report);
+    for (int f = 0; f < request->fronts; ++f)
+        front[f] = front_read(sweep->pool, request->front[f], sweep->metrics, sweep->metric);
+    return (SweepReport){request->report, request->fronts, front};
+}
+
+static void write_report(const Sweep *sweep, const SweepReport *report)
+{
+    const char *notes =
+        sweep_report_page(sweep->pool, sweep->model, sweep->form, sweep->plan->count, sweep->journal->row, report);
+    if (*notes && !sweep->quiet)
+        diag_note(pool_print(sweep->pool, "%s: note: %s:\n%s", program_place().source->path, report->path, notes));
+}
+
 void sweep_all(Pool *pool, const Model *model, const Scene *scene, const SweepRequest *request, SweepTable *table)
 {
     const double begun = clock_seconds(CLOCK_MONOTONIC);
@@ -289,6 +319,7 @@ void sweep_all(Pool *pool, const Model *model, const Scene *scene, const SweepRe
                    .quiet = request->quiet,
                    .processes = share_processes()};
     open_sweep(&sweep, request, false, table);
+    const SweepReport report = request->report ? open_report(&sweep, request) : (SweepReport){.path = NULL};
     const FolderPlan parts = {sweep_key(pool, sweep.form, &request->code), plan.runs, plan.parts, table->form};
 
     interrupt_hold();
@@ -313,6 +344,8 @@ void sweep_all(Pool *pool, const Model *model, const Scene *scene, const SweepRe
     if (plan.part) {
         journal_close(&journal);
     } else {
+        if (report.path) /* before the journal goes: the same command makes a page that can't be written */
+            write_report(&sweep, &report);
         write_results(&sweep, request->results);
         journal_remove(&journal);
     }

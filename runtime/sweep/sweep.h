@@ -301,7 +301,10 @@ typedef struct SweepRequest {
     int64_t latin;        /* 0: a grid, */
     int64_t sobol;        /* if this is 0, too: base points of Saltelli's runs */
     uint64_t seed;
-    bool series;     /* keep outputs over time; results are HDF5 then */
+    bool series;              /* keep outputs over time; results are HDF5 then */
+    const char *report;       /* a page; NULL: none */
+    const char *const *front; /* [fronts] words for front_read() */
+    int fronts;
     int part, parts; /* only part 1 to `parts`; 0: all of it, or for sweep_plan() as many as fit */
     bool quiet;
 } SweepRequest;

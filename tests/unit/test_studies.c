@@ -410,7 +410,7 @@ static void test_sweep(void **state)
     } while (failed);
     assert_true(rounds > 20);
     free(whole);
-    gicl_sweep wrong[] = {sweep, sweep, sweep, sweep, sweep, sweep, sweep, sweep};
+    gicl_sweep wrong[] = {sweep, sweep, sweep, sweep, sweep, sweep, sweep, sweep, sweep, sweep};
     wrong[0].size = 3;
     wrong[1].scene = NULL;
     wrong[2].results = NULL;
@@ -420,6 +420,9 @@ static void test_sweep(void **state)
     wrong[6].vary = other;
     wrong[7].vary = twice;
     wrong[7].varied = 2;
+    wrong[8].report = "page.html"; /* of no metric */
+    wrong[9].front = other;        /* on no page */
+    wrong[9].fronts = 1;
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; ++i)
         assert_int_equal(gicl_sweep_run(lib->lib, lib->model, &wrong[i], &result, lib->said), GICL_WRONG);
     assert_int_equal(gicl_sweep_run(lib->lib, lib->model, NULL, &result, lib->said), GICL_WRONG);

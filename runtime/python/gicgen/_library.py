@@ -40,7 +40,8 @@ class Sweep(ctypes.Structure):
                 ("vary", ctypes.POINTER(ctypes.c_char_p)), ("varied", ctypes.c_int), ("latin", ctypes.c_int64),
                 ("seed", ctypes.c_uint64), ("alone", ctypes.c_int), ("quiet", ctypes.c_int), ("part", ctypes.c_int),
                 ("parts", ctypes.c_int), ("metric", ctypes.POINTER(ctypes.c_char_p)), ("metrics", ctypes.c_int), ("series", ctypes.c_int),
-                ("sobol", ctypes.c_int64)]
+                ("sobol", ctypes.c_int64), ("report", ctypes.c_char_p), ("front", ctypes.POINTER(ctypes.c_char_p)),
+                ("fronts", ctypes.c_int)]
 
 
 class Array(ctypes.Structure):
