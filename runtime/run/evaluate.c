@@ -134,7 +134,9 @@ static void write_header(const Engine *engine, Csv *csv)
     }
     for (int i = 0; i < model->body_count; ++i)
         for (int k = 0; k < 7 && !is_ground(model, i); ++k) {
-            snprintf(name, sizeof name, "%s.%s", model->body_name[i], pose[k][0]);
+            const char *body = model->body_name[i];
+            const bool taken = model->free_base && (!strcmp(body, "a") || !strcmp(body, "alpha"));
+            snprintf(name, sizeof name, "%s%s.%s", taken ? "body/" : "", body, pose[k][0]);
             csv_name(csv, name, pose[k][1]);
         }
     for (int i = 0; i < model->output_count; ++i) {

@@ -297,6 +297,28 @@ check '--eval gives a row for each state' [ "$(wc -l <"$work/e.csv")" -eq 5 ]
 check '--eval: exit status 0 and a note' exits 0
 check '--eval: the note counts' says 'warning: 1 of 4 rows have no result'
 check '--eval: a failing row has empty cells and a status' grep -q '^,*-[0-9]*,"' "$work/e.csv"
+# the base's acceleration is a.x to alpha.z
+for base in a alpha ground; do
+    cat >"$work/named.veh" <<END
+gicgen: 1
+model: named
+base: $base
+bodies:
+  a: {mass: 1, com: [0, 0, 0], inertia: [1, 1, 1]}
+  alpha: {mass: 1, com: [1, 0, 0], inertia: [1, 1, 1]}
+joints:
+  one: {type: revolute, bodies: [$([ $base = alpha ] && echo alpha, a || echo a, alpha)], point: [0.5, 0, 0], axis: [0, 1, 0]}
+$([ $base = ground ] && echo '  two: {type: revolute, bodies: [ground, a], point: [0, 0, 0], axis: [0, 1, 0]}')
+coordinates:
+  turn: {type: angle, bodies: [$([ $base = alpha ] && echo alpha, a || echo a, alpha)], axis: [0, 1, 0]}
+$([ $base = ground ] && echo '  lift: {type: angle, bodies: [ground, a], axis: [0, 1, 0]}')
+END
+    if [ $base = ground ]; then echo 'turn,turn.rate,lift,lift.rate' && echo 0,0,0,0; else
+        echo 'r.x,r.y,r.z,e0,e1,e2,e3,turn,v.x,v.y,v.z,omega.x,omega.y,omega.z,turn.rate' && echo 7,0,0,1,0,0,0,0,0,0,0,0,0,0,0; fi >"$work/named.csv"
+    run --eval "$work/named.csv" "$work/named.veh" -o "$work/named.out"
+    check "--eval: no two columns of one name, base $base" [ -s "$work/named.out" ] && head -1 "$work/named.out" | tr ',' '\n' | sed 's/ .*//' | sort | uniq -d >"$work/twice"
+    check "--eval: their names, base $base" [ ! -s "$work/twice" ]
+done
 check '--eval: the pose is the closed one' awk -F, 'function abs(x) {return x < 0 ? -x : x}
     NR == 1 {for (i = 1; i <= NF; ++i) {sub(/ \[.*/, "", $i); at[$i] = i}}
     NR == 3 {s = 2 * $at["arm.e0"] * $at["arm.e3"]; exit !(abs(s - (0.5625 + 1 - 1) / 1.5) < 1e-14)}' "$work/e.csv"
