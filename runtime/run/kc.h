@@ -109,6 +109,7 @@ struct KcLook {
     KcLook *whole;      /* columns: travel, what follows, steering; each by itself */
     double *follow;     /* [wheels][followers] rates of what follows by those of travel */
     double *relax;      /* [wheels + followers] step to where the rubber's forces are balanced, heights held */
+    double *bend;       /* [wheels][followers] change of `follow` along the motion of the last kc_look_second() */
 };
 
 KcLook *kc_look_new(const Kc *kc, const KcAxle *axle);
@@ -116,11 +117,13 @@ KcLook *kc_look_new(const Kc *kc, const KcAxle *axle);
 int kc_look(const Kc *kc, const double *w, KcLook *look);
 /* The derivative of an element's coordinate, length or angle by a column. */
 double kc_element_slope(const KcElement *element, const KcLook *look, int column);
+/* Its change along the motion of the last kc_look_second(), whose result is `second`. */
+double kc_element_bend(const KcElement *element, const KcLook *look, const double *second, int column);
 /* w += step times a motion with the rates `along` [columns], and what follows. */
 void kc_move(const KcLook *look, const double *along, double step, double *w);
 /* Derivatives by the columns of the outputs that are rates, while coordinates move with the rates `along` [columns]:
- * second derivatives, of looks in which nothing follows. second: [columns][outputs]. Returns a status. */
-int kc_look_second(const Kc *kc, const double *w, const KcLook *look, const double *along, double *second);
+ * second derivatives. second: [columns][outputs]. Returns a status. */
+int kc_look_second(const Kc *kc, const double *w, KcLook *look, const double *along, double *second);
 /* The text of a status that a look has returned. */
 const char *kc_status(const Kc *kc, int status);
 
@@ -138,6 +141,10 @@ const char *kc_rubber_formula(const Kc *kc);
 KcBent kc_bend(const KcRubber *rubber, const KcLook *look);
 /* q' by a column: theta' = (I - 1/2 [theta]x + c [theta]x^2) omega. */
 void kc_bend_rate(const KcRubber *rubber, const KcBent *bent, const KcLook *look, int column, double out[6]);
+/* q_,ab by column a and a motion b: rates_b [outputs] are the rates in this motion, second [outputs] these
+ * differentiated by column a, as kc_look_second() gives them. */
+void kc_bend_second(const KcRubber *rubber, const KcBent *bent, const KcLook *look, int a, const double *rates_b,
+                    const double *second, double out[6]);
 /* The generalized force of all bushings along column a, and its derivative by column b. second: [outputs] of column a,
  * as kc_look_second() gives it for a motion along b alone. */
 double kc_rubber_force(const Kc *kc, const KcLook *look, int a);
@@ -151,6 +158,9 @@ bool kc_is_mount(const Model *model, int coordinate);
 void kc_find_followers(Kc *kc, KcAxle *axle);
 /* look->follow and look->relax from look->whole. Returns a status. */
 int kc_follow(const Kc *kc, KcLook *look);
+/* look->bend along a motion of the columns of look->whole with the rates `along`; second [columns][outputs]: of
+ * look->whole along it. Returns a status. */
+int kc_follow_second(const Kc *kc, KcLook *look, const double *along, const double *second);
 
 /* ---- kc_wheel.c: a wheel as geometry sees it */
 
@@ -205,7 +215,7 @@ const KcCurve *kc_sweep(const Kc *kc, const KcAxle *axle, KcMotion motion, doubl
 /* ---- kc_row.c: the quantities of one position */
 
 /* along: rates of the look's columns along the motion, of which `at` moves with the rate 1. Returns a status. */
-int kc_row(const Kc *kc, const KcAxle *axle, KcMotion motion, const double *w, const KcLook *look, const double *along,
+int kc_row(const Kc *kc, const KcAxle *axle, KcMotion motion, const double *w, KcLook *look, const double *along,
            KcRow *row);
 /* The row of a position, in parallel travel, of an axle that can be moved. w: [coordinates]. Returns a status. */
 int kc_position(const Kc *kc, const KcAxle *axle, const double *w, KcRow *row);
@@ -220,7 +230,7 @@ bool kc_solve(int n, double *A, double *b);
 /* Vertical forces [wheels] of the ground that hold the force elements, and their rates along a motion. Returns a
  * status.
  */
-int kc_forces(const Kc *kc, const KcAxle *axle, const double *w, const KcLook *look, const double *along, double *force,
+int kc_forces(const Kc *kc, const KcAxle *axle, const double *w, KcLook *look, const double *along, double *force,
               double *rate);
 
 /* ---- kc_table.c: names and units */

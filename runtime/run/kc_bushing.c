@@ -151,14 +151,13 @@ void kc_bend_rate(const KcRubber *rubber, const KcBent *bent, const KcLook *look
     to_rate(bent->q + 3, omega, out + 3);
 }
 
-/* q_,ab; second: velocities at the unit rate of column b, differentiated by coordinate a. With the first body's angular
- * velocity o, A^T x changes by A^T (x' - o x x). */
-static void bend_second(const KcRubber *rubber, const KcBent *bent, const KcLook *look, int a, int b,
-                        const double *second, double out[6])
+/* With the first body's angular velocity o, A^T x changes by A^T (x' - o x x). */
+void kc_bend_second(const KcRubber *rubber, const KcBent *bent, const KcLook *look, int a, const double *rates_b,
+                    const double *second, double out[6])
 {
     double v[3][3], turn[3][3], carrier[3][3], along[3], lever[3], part[3], omega[3], c, slope;
     const double *theta = bent->q + 3;
-    const double *rates[] = {look->slope + a * look->outputs, look->slope + b * look->outputs, second};
+    const double *rates[] = {look->slope + a * look->outputs, rates_b, second};
     for (int i = 0; i < 3; ++i)
         relative(rubber, bent, rates[i], v[i], turn[i], carrier[i]);
     cross3(carrier[0], bent->lever, lever);
@@ -222,7 +221,7 @@ double kc_rubber_slope(const Kc *kc, const KcLook *look, int a, int b, const dou
         kc_bend_rate(rubber, &bent, look, a, by[0]);
         kc_bend_rate(rubber, &bent, look, b, by[1]);
         force_of(rubber, NULL, by[1], change);
-        bend_second(rubber, &bent, look, a, b, second, both);
+        kc_bend_second(rubber, &bent, look, a, look->slope + b * look->outputs, second, both);
         for (int i = 0; i < BUSHING_AXES; ++i)
             sum += change[i] * by[0][i] + Q[i] * both[i];
     }

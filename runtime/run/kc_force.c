@@ -31,37 +31,15 @@ static int hold(const Kc *kc, const KcAxle *axle, const KcLook *look, double *J,
     return kc_solve(n, A, force) ? GIC_OK : GIC_ERROR_SINGULAR;
 }
 
-/* F' of an axle on rubber, whose followers have no second derivatives here: central differences. */
-static int differ(const Kc *kc, const KcAxle *axle, const double *w, const KcLook *look, const double *along,
-                  double *rate)
-{
-    static const double step = 1e-5; /* m of travel, rad of roll */
-    const size_t size = (size_t)kc->model->coordinates * sizeof *w;
-    double *there = pool_alloc(kc->pool, size), J[KC_WHEELS * KC_WHEELS], force[2][KC_WHEELS];
-    KcLook *other = kc_look_new(kc, axle);
-    for (int end = 0; end < 2; ++end) {
-        memcpy(there, w, size);
-        kc_move(look, along, end ? step : -step, there);
-        int status = kc_look(kc, there, other);
-        if (status == GIC_OK)
-            status = hold(kc, axle, other, J, force[end]);
-        if (status != GIC_OK)
-            return status;
-    }
-    for (int i = 0; i < axle->wheels; ++i)
-        rate[i] = (force[1][i] - force[0][i]) / (2 * step);
-    return GIC_OK;
-}
-
-int kc_forces(const Kc *kc, const KcAxle *axle, const double *w, const KcLook *look, const double *along, double *force,
+int kc_forces(const Kc *kc, const KcAxle *axle, const double *w, KcLook *look, const double *along, double *force,
               double *rate)
 {
     const int n = axle->wheels;
     double J[KC_WHEELS * KC_WHEELS], *second;
     KcPose pose[KC_WHEELS], moved[KC_WHEELS], by;
     int status = hold(kc, axle, look, J, force);
-    if (status != GIC_OK || look->axle)
-        return status != GIC_OK ? status : differ(kc, axle, w, look, along, rate);
+    if (status != GIC_OK)
+        return status;
     second = pool_alloc(kc->pool, ((size_t)look->columns * (size_t)kc->outputs + 1) * sizeof *second);
     status = kc_look_second(kc, w, look, along, second);
     if (status != GIC_OK)
@@ -76,7 +54,7 @@ int kc_forces(const Kc *kc, const KcAxle *axle, const double *w, const KcLook *l
         unit[a] = 1;
         for (int e = 0; e < kc->elements; ++e) {
             const KcElement *element = &kc->element[e];
-            const double bend = element->coordinate >= 0 ? 0 : second[a * kc->outputs + element->rate];
+            const double bend = kc_element_bend(element, look, second, a);
             double change = 0;
             for (int k = 0; k < look->columns; ++k)
                 change += along[k] * look->slope[k * kc->outputs + element->force];

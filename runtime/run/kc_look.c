@@ -29,6 +29,7 @@ KcLook *kc_look_new(const Kc *kc, const KcAxle *axle)
         look->whole->slope = pool_alloc(kc->pool, ((size_t)kc->outputs + 1) * room);
         look->follow = pool_alloc(kc->pool, (size_t)axle->wheels * room);
         look->relax = pool_alloc(kc->pool, room);
+        look->bend = pool_alloc(kc->pool, (size_t)axle->wheels * room);
     }
     look->value = pool_alloc(kc->pool, ((size_t)kc->outputs + 1) * sizeof(double));
     look->slope = pool_alloc(kc->pool, ((size_t)kc->outputs * (size_t)look->columns + 1) * sizeof(double));
@@ -125,6 +126,16 @@ double kc_element_slope(const KcElement *element, const KcLook *look, int column
     return element->coordinate == look->column[column];
 }
 
+double kc_element_bend(const KcElement *element, const KcLook *look, const double *second, int column)
+{
+    if (element->coordinate < 0)
+        return second[column * look->outputs + element->rate];
+    for (int j = 0; look->axle && j < look->axle->followers && column < look->axle->wheels; ++j)
+        if (element->coordinate == look->axle->follower[j])
+            return look->bend[column * look->axle->followers + j];
+    return 0;
+}
+
 void kc_move(const KcLook *look, const double *along, double step, double *w)
 {
     for (int k = 0; k < look->columns; ++k) {
@@ -154,8 +165,36 @@ int kc_look(const Kc *kc, const double *w, KcLook *look)
     return status;
 }
 
-int kc_look_second(const Kc *kc, const double *w, const KcLook *look, const double *along, double *second)
+/* A column moves with the coordinates that follow it, whose rates change along the motion. */
+static int second_with_followers(const Kc *kc, const double *w, KcLook *look, const double *along, double *second)
 {
+    KcLook *whole = look->whole;
+    const int wheels = look->axle->wheels, followers = look->axle->followers, outputs = kc->outputs;
+    double *each = pool_alloc(kc->pool, (size_t)whole->columns * (size_t)outputs * sizeof *each),
+           rate[KC_COLUMNS] = {0};
+    for (int k = 0; k < look->columns; ++k) {
+        rate[k < wheels ? k : k + followers] = along[k];
+        for (int j = 0; j < followers && k < wheels; ++j)
+            rate[wheels + j] += along[k] * look->follow[k * followers + j];
+    }
+    int status = kc_look_second(kc, w, whole, rate, each);
+    if (status == GIC_OK)
+        status = kc_follow_second(kc, look, rate, each);
+    for (int k = 0; k < look->columns && status == GIC_OK; ++k)
+        for (int i = 0; i < outputs; ++i) {
+            double sum = each[(k < wheels ? k : k + followers) * outputs + i];
+            for (int j = 0; j < followers && k < wheels; ++j)
+                sum += look->follow[k * followers + j] * each[(wheels + j) * outputs + i] +
+                       look->bend[k * followers + j] * whole->slope[(wheels + j) * outputs + i];
+            second[k * outputs + i] = sum;
+        }
+    return status;
+}
+
+int kc_look_second(const Kc *kc, const double *w, KcLook *look, const double *along, double *second)
+{
+    if (look->axle)
+        return second_with_followers(kc, w, look, along, second);
     memcpy(kc->work, kc->self, kc->engine->code->size);
     put(kc, w, look, along);
     int status = start(kc);

@@ -236,7 +236,7 @@ static int first_of(const KcAxle *axle, double side)
     return -1;
 }
 
-int kc_row(const Kc *kc, const KcAxle *axle, KcMotion motion, const double *w, const KcLook *look, const double *along,
+int kc_row(const Kc *kc, const KcAxle *axle, KcMotion motion, const double *w, KcLook *look, const double *along,
            KcRow *row)
 {
     const int left = first_of(axle, 1), right = first_of(axle, -1), n = axle->wheels;

@@ -60,7 +60,8 @@ typedef struct Given {
     double A[ROOM * ROOM];
 } Given;
 
-static bool solve(const Given *given, double soft, const double *right, double *out)
+/* lambda [wheels]; NULL: it is not asked for. */
+static bool solve(const Given *given, double soft, const double *right, double *out, double *lambda)
 {
     const int all = given->n + given->wheels;
     double A[ROOM * ROOM], b[ROOM];
@@ -74,6 +75,8 @@ static bool solve(const Given *given, double soft, const double *right, double *
         return false;
     for (int a = 0; a < given->n; ++a)
         out[a] = b[a] * given->scale[a];
+    for (int i = 0; lambda && i < given->wheels; ++i)
+        lambda[i] = b[given->n + i] * given->most;
     return true;
 }
 
@@ -102,7 +105,7 @@ static void prepare(const Kc *kc, const KcAxle *axle, const KcLook *whole, const
 static bool is_determined(const Given *given, const double *right, const double *v)
 {
     double other[KC_COLUMNS], most = 0, apart = 0;
-    if (!solve(given, 1e-9, right, other))
+    if (!solve(given, 1e-9, right, other, NULL))
         return false;
     for (int a = 0; a < given->n; ++a) {
         most = fmax(most, fabs(v[a]) / given->scale[a]);
@@ -122,12 +125,12 @@ int kc_follow(const Kc *kc, KcLook *look)
     prepare(kc, axle, whole, K, &given);
     for (int a = 0; a < n; ++a)
         right[a] = axle->preload[a] - g[a];
-    if (!solve(&given, 0, right, look->relax))
+    if (!solve(&given, 0, right, look->relax, NULL))
         return GIC_ERROR_SINGULAR;
     memset(right, 0, sizeof right);
     for (int i = 0; i < wheels; ++i) {
         right[n + i] = 1;
-        if (!solve(&given, 0, right, V[i]) || !is_determined(&given, right, V[i]))
+        if (!solve(&given, 0, right, V[i], NULL) || !is_determined(&given, right, V[i]))
             return GIC_ERROR_SINGULAR;
         right[n + i] = 0;
     }
@@ -144,6 +147,71 @@ int kc_follow(const Kc *kc, KcLook *look)
             for (int i = 0; i < wheels; ++i)
                 sum += share[i] * V[i][wheels + j];
             look->follow[k * axle->followers + j] = sum;
+        }
+    }
+    return GIC_OK;
+}
+
+/* The change of K [n][n] along a motion; second [columns][outputs]: of the look along it. */
+static void stiffness_rate(const Kc *kc, const KcLook *look, int n, const double *along, const double *second,
+                           double *rate)
+{
+    double *moved = pool_alloc(kc->pool, ((size_t)kc->outputs + 1) * sizeof *moved); /* rates in the motion */
+    for (int k = 0; k < look->columns; ++k)
+        for (int i = 0; i < kc->outputs; ++i)
+            moved[i] += along[k] * look->slope[k * kc->outputs + i];
+    memset(rate, 0, (size_t)n * (size_t)n * sizeof *rate);
+    for (int r = 0; r < kc->rubbers; ++r) {
+        const KcRubber *rubber = &kc->rubber[r];
+        const KcBent bent = kc_bend(rubber, look);
+        double by[KC_COLUMNS][BUSHING_AXES], change[KC_COLUMNS][BUSHING_AXES];
+        for (int a = 0; a < n; ++a) {
+            kc_bend_rate(rubber, &bent, look, a, by[a]);
+            kc_bend_second(rubber, &bent, look, a, moved, second + a * kc->outputs, change[a]);
+        }
+        for (int a = 0; a < n; ++a)
+            for (int b = 0; b < n; ++b)
+                for (int i = 0; i < BUSHING_AXES; ++i)
+                    for (int k = 0; k < BUSHING_AXES; ++k)
+                        rate[a * n + b] += rubber->stiffness[i * BUSHING_AXES + k] *
+                                           (change[a][i] * by[b][k] + by[a][i] * change[b][k]);
+    }
+}
+
+/* A column W of the motions, K W + J^T lambda = 0 with 1 at its own coordinate of travel and 0 at the others, changes
+ * by W': K W' + J^T lambda' = -(K' W + J'^T lambda), with 0 at those of travel. J W' is what it becomes. */
+int kc_follow_second(const Kc *kc, KcLook *look, const double *along, const double *second)
+{
+    const KcAxle *axle = look->axle;
+    const KcLook *whole = look->whole;
+    const int wheels = axle->wheels, followers = axle->followers, n = wheels + followers;
+    double K[KC_COLUMNS * KC_COLUMNS], turned[KC_COLUMNS * KC_COLUMNS], g[KC_COLUMNS];
+    Given given;
+    stiffness_of(kc, whole, n, K, g);
+    stiffness_rate(kc, whole, n, along, second, turned);
+    prepare(kc, axle, whole, K, &given);
+    for (int k = 0; k < wheels; ++k) {
+        double W[KC_COLUMNS] = {0}, same[KC_COLUMNS], lambda[KC_WHEELS], right[ROOM] = {0};
+        W[k] = 1;
+        memcpy(W + wheels, look->follow + k * followers, (size_t)followers * sizeof *W);
+        for (int i = 0; i < wheels; ++i)
+            for (int a = 0; a < n; ++a)
+                right[n + i] += whole->slope[a * whole->outputs + axle->wheel[i].centre + 2] * W[a];
+        if (!solve(&given, 0, right, same, lambda))
+            return GIC_ERROR_SINGULAR;
+        memset(right, 0, sizeof right);
+        for (int a = 0; a < n; ++a) {
+            for (int b = 0; b < n; ++b)
+                right[a] -= turned[a * n + b] * W[b];
+            for (int i = 0; i < wheels; ++i)
+                right[a] -= second[a * whole->outputs + axle->wheel[i].velocity + 2] * lambda[i];
+        }
+        if (!solve(&given, 0, right, W, NULL))
+            return GIC_ERROR_SINGULAR;
+        for (int j = 0; j < followers; ++j) {
+            look->bend[k * followers + j] = W[wheels + j];
+            for (int m = 0; m < wheels; ++m)
+                look->bend[k * followers + j] -= W[m] * look->follow[m * followers + j];
         }
     }
     return GIC_OK;

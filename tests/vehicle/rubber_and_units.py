@@ -121,6 +121,19 @@ for place in "inner_l", "[-1.3, 0.7, 0.3]", "[-0.5, 0.2, 0.6]":
 turned = {**on_rubber(3e5, 200), "frame": ", position: [-1.3, 0.7, 0.3], orientation: {axis: [0, 0, 1], angle: 0.5}"}
 most = worst(soft, study("turned", turned, *rear))
 check("frames that are turned", most[0] < 1e-7, most)
+
+# Rates of forces: what `force` does from row to row, by five of them; the error of that is of the fourth order in steps
+# of 0.1 mm, some 1e-11, and rounding of `force` over these, some 1e-10. At the drawing alone: there the rubber bears
+# nothing, whose forces would turn.
+fine = study("fine", on_rubber(3e5, 200), "--axle", "rear", "--travel", "0.002")
+for motion in "parallel", "opposite":
+    row = [r for r in fine if r["motion"] == motion]
+    zero = next(i for i, r in enumerate(row) if float(r["travel"]) == 0)
+    for wheel in "rear_l", "rear_r":
+        slope = {k: sum(c * float(row[zero + i][f"{wheel}.{k}"]) for c, i in ((1, -2), (-8, -1), (8, 1), (-1, 2)))
+                 for k in ("force", "contact_z")}
+        rate, seen = float(row[zero][f"{wheel}.wheel_rate"]), slope["force"] / slope["contact_z"]
+        check(f"wheel rate of {wheel}, {motion}", abs(rate - seen) < 1e-8 * abs(seen) and seen > 1000, (rate, seen))
 done = said("loose", on_rubber(3e5, 0, ("inner",)), "--axle", "rear")
 check("one ball does not hold an arm", done.returncode == 1 and "does not hold all of" in done.stderr, done.stderr + done.stdout)
 formula = on_rubber(3e5, 200)
