@@ -174,18 +174,46 @@ void manoeuvre_ride_numbers(Manoeuvre *m, const Trial *trial)
     add_loads(m, trial);
 }
 
+/* Distance of the road's tracks, m: that of the front wheels; of the widest axle where the front ones run midway
+ * between the tracks, *between; a usual one for wheels in one line. */
+static double track_of(const Sheet *sheet, bool *between)
+{
+    static const double usual = 1.5, in_line = 0.1; /* m */
+    double track = 0;
+    *between = false;
+    for (int a = 0; a < sheet->kc->axles; ++a) {
+        double aside;
+        sheet_axle_place(sheet, &sheet->kc->axle[a], &aside);
+        if (a == 0 && 2 * aside >= in_line)
+            return 2 * aside;
+        track = fmax(track, 2 * aside);
+    }
+    *between = true;
+    return track >= in_line ? track : usual;
+}
+
+static void note_track(Manoeuvre *m)
+{
+    bool between;
+    const double track = track_of(&m->car->sheet, &between);
+    if (between)
+        sheet_note(m->result, pool_print(m->pool,
+                                         "the foremost wheel runs midway between the tracks of the road, which are "
+                                         "%.3g m apart: there the road is the mean of both",
+                                         track));
+}
+
 /* At a speed that it keeps, on a road of a class from a seed. */
 static const Trial *drive(Manoeuvre *m, const char *name, double speed, int class, double duration, double seed)
 {
     TestCar *car = m->car;
-    double aside[2];
+    bool between;
     duration += ride_run_in;
-    sheet_axle_place(&car->sheet, &car->sheet.kc->axle[0], &aside[0]);
     Text more = {.pool = m->pool};
     text_print(&more,
                "road: {type: iso8608, class: %c, length: %.9g, seed: %.0f, start: %.9g, track: %.9g}\n"
                "driver:\n  speed: {target: %.17g, gain: 3, integral: 1}\n",
-               'A' + class - 1, ceil(speed * (duration + 2) + 20), seed, 10.0, 2 * aside[0], speed);
+               'A' + class - 1, ceil(speed * (duration + 2) + 20), seed, 10.0, track_of(&car->sheet, &between), speed);
     if (car->axle) /* which keeps it between its tracks */
         text_print(&more,
                    "  steering:\n    path: {points: [[-20, 0], [%.9g, 0]]}\n    input: %s\n    per_angle: %.17g\n"
@@ -205,6 +233,7 @@ void manoeuvre_ride(Manoeuvre *m)
     car_need_drive(m->car);
     car_need_brake(m->car);
     car_settle(m->car, m->value[0]);
+    note_track(m);
     const Trial *trial = drive(m, "ride", m->value[0], (int)round(m->value[1]), m->value[2], m->value[3]);
     manoeuvre_ride_numbers(m, trial);
     manoeuvre_draw(m, sizeof over / sizeof *over, over);
@@ -220,6 +249,7 @@ void manoeuvre_ride_speeds(Manoeuvre *m)
     int n = 0;
     car_need_drive(car);
     car_need_brake(car);
+    note_track(m);
     for (int k = 0; k < SPEEDS; ++k) {
         const double speed = low + (high - low) * k / (SPEEDS - 1);
         const char *why, *at = pool_print(m->pool, "at_%.4g", speed);

@@ -198,11 +198,46 @@ static int move_to(SceneEvents *events, const gic_model *model, Variable *variab
 static void happen(SceneEvents *events, const gic_model *model, Action *action, gic_head *self)
 {
     double *input = instance_array(self, model->input_offset);
+    const double time = gic_time(self);
+    action->time = time;
     if (self->input_function)
-        self->input_function(self->user, self->lane, action->time, input);
+        self->input_function(self->user, self->lane, time, input);
     action_start(events->pool, action, events->scene, input);
     if (self->input_function)
-        self->input_function(self->user, self->lane, action->time, input);
+        self->input_function(self->user, self->lane, time, input);
+}
+
+/* The next action whose condition is true at `self`, but was not when it was last noted; NULL: there is none. */
+static int follows(SceneEvents *events, const gic_model *model, const gic_head *self, Action **next)
+{
+    const Actions *actions = events->scene->actions;
+    int status = GIC_OK;
+    *next = NULL;
+    for (int i = 0; i < actions->count && status == GIC_OK && !*next; ++i) {
+        Action *action = &actions->action[i];
+        double value = 0;
+        if (action->done || action->held)
+            continue;
+        status = value_at(events, model, action, self, &value);
+        if (value > 0)
+            *next = action;
+    }
+    return status;
+}
+
+/* At the time of an action it happens, with all that follow from it there: by an input that jumps, or at the same
+ * instant. Controllers sample before, as nothing has changed yet. */
+static int happen_all(SceneEvents *events, const gic_model *model, Action *action, gic_head *self, bool *ended)
+{
+    double next;
+    int status = gic_sample(model, self, &next);
+    while (status == GIC_OK && action && !*ended) {
+        happen(events, model, action, self);
+        *ended = action->ends;
+        if (!*ended)
+            status = follows(events, model, self, &action);
+    }
+    return status;
 }
 
 int scene_events_step(SceneEvents *events, const gic_model *model, Variable *variable, gic_head *self, double end,
@@ -226,12 +261,10 @@ int scene_events_step(SceneEvents *events, const gic_model *model, Variable *var
             self->rhs_count = events->after->rhs_count;
             status = move_to(events, model, variable, self, action->time);
         }
-        if (status != GIC_OK)
+        if (status == GIC_OK)
+            status = happen_all(events, model, action, self, ended);
+        if (status != GIC_OK || *ended)
             return status;
-        happen(events, model, action, self);
-        *ended = *ended || action->ends;
-        if (*ended)
-            return GIC_OK;
         memcpy(events->before, self, model->size);
         status = note_held(events, model, self);
         if (status == GIC_OK)

@@ -228,7 +228,10 @@ static int try_step(Work *w, double part)
     memset(w->move, 0, (size_t)linear->count * sizeof *w->move);
     for (int j = 0; j < w->unknowns; ++j) {
         const Unknown *u = &w->unknown[j];
-        const double by = part * w->step[j] * scale_of(u);
+        const bool pedal = w->trim->goal.pedal && u->kind == INPUT && u->index == w->pedal;
+        double by = part * w->step[j] * scale_of(u);
+        if (pedal) /* it stays above 0, below which it changes nothing; all else goes on, and may need it again */
+            by = fmax(by, -0.9 * *input_of(w, w->pedal));
         motion_of(w, u, w->way);
         for (int i = 0; i < linear->count; ++i)
             w->move[i] += by * w->way[i];
@@ -245,15 +248,12 @@ static int try_step(Work *w, double part)
     return linear_start(linear, w->trial, w->move);
 }
 
-/* The part of the step that is not too far. Pedals stay above 0, below which they change nothing. */
+/* The part of the step that is not too far. */
 static double fair_part(const Work *w)
 {
     double most = 1;
     for (int j = 0; j < w->unknowns; ++j)
         most = fmax(most, isfinite(w->unknown[j].unit) ? fabs(w->step[j]) : 0);
-    for (int j = 0; j < w->unknowns; ++j)
-        if (w->trim->goal.pedal && w->unknown[j].kind == INPUT && w->unknown[j].index == w->pedal)
-            most = fmax(most, -w->step[j] * scale_of(&w->unknown[j]) / (0.9 * *input_of(w, w->pedal)));
     return 1 / most;
 }
 

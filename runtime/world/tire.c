@@ -129,7 +129,8 @@ static double aligning(const Magic *t, bool combined, double fy)
 
 static double rolling_moment(const Magic *t, const TireMotion *motion, double fx)
 {
-    const double *p = t->p, v = motion->speed / P(LONGVL);
+    /* files in which nothing depends on the speed may lack the speed that it is relative to */
+    const double *p = t->p, v = P(QSY3) != 0 || P(QSY4) != 0 ? motion->speed / P(LONGVL) : 0;
     return -t->R * t->F * (P(QSY1) + P(QSY2) * fx / P(FNOMIN) + P(QSY3) * fabs(v) + P(QSY4) * v * v * v * v) * P(LMY) *
            tanh(motion->spin);
 }

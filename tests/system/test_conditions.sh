@@ -197,5 +197,56 @@ for base in ground m; do
     done
 done
 
+# ---- what follows at the same time: an input jumps and with it an acceleration, two at one instant, an end; x'' = push / 2
+sed -e '/^  spring:/d' -e 's/^outputs:/&\n  push: {type: acceleration, body: left}/' "$work/carts.veh" >"$work/pushed.veh"
+for integrator in ab3 rk4 ros3 adams rkck; do
+    printf 'gicscene: 1\nduration: 1\nstep: 0.01\noutput_step: 0.1\nintegrator: %s\n%s\n' $integrator 'when:
+  - {if: "time > 0.355", inputs: {push: 1}}
+  - {if: "input.push > 0.5", mark: pushed}
+  - {if: "push.x > 0.25", mark: faster}
+  - {if: "time > 0.355", mark: twin}
+  - {if: "x < 0", mark: never}' >"$work/a.scene"
+    run "$work/pushed.veh" "$work/a.scene" -o "$work/a.csv"
+    for condition in 'time > 0.355' 'input.push > 0.5' 'push.x > 0.25'; do
+        check "$integrator: $condition" happened "$condition" 0.355 1e-12
+    done
+    check "$integrator: both of one condition" [ "$(grep -c 'happened *time > 0.355 at t = 0.355 s' "$work/err")" -eq 2 ]
+    check "$integrator: what does not follow" says 'did not happen *x < 0'
+    check "$integrator: one parabola from there on" awk -F, 'NR > 1 {s = $1 < 0.355 ? 0 : $1 - 0.355; d = $5 - s * s / 4
+        if (!(d < 1e-12 && d > -1e-12)) bad = 1} END {exit bad || NR != 12}' "$work/a.csv"
+    sed -i 's/^when:/until: "input.push > 0.5"\n&/' "$work/a.scene"
+    run "$work/pushed.veh" "$work/a.scene" -o "$work/a.csv"
+    check "$integrator: an end that follows" last 1 0.355 1e-12
+done
+
+# ---- a controller counts, and copies an input a period later. The third sample, at 0.2 s, sets that input: it has read it as it was
+# before, wherever steps end, so that the copy is 1 up to 0.4 s and 2 then
+cat >"$work/counts.veh" <<'END'
+gicgen: 1
+model: counts
+base: ground
+bodies: {n: {mass: 1, com: [0, 0, 0], inertia: [1, 1, 1]}}
+joints: {rail: {type: prismatic, bodies: [ground, n], axis: [1, 0, 0]}}
+coordinates: {x: {type: translation, bodies: [ground, n], axis: [1, 0, 0], range: [-9, 9]}}
+inputs: {f: {unit: N}}
+controllers:
+  c: {period: 0.1, rules: {n: "c.n + 1", d: {value: f, delay: 0.1}}}
+signals: {d: c.d}
+outputs: {d: {type: signal, signal: d}}
+END
+for integrator in ab3 rk4 ros2 adams rkck; do
+    for step in 0.1 0.05 0.025 0.07 0.03; do
+        printf 'gicscene: 1\nduration: 1\nstep: %s\noutput_step: 0.05\nintegrator: %s\ninputs: {f: 1}\nwhen: [{if: "c.n >= 3", inputs: {f: 2}}]\n' \
+            $step $integrator >"$work/a.scene"
+        case $step in 0.07 | 0.03) sed -i "s/output_step: 0.05/output_step: $(awk "BEGIN {print 5 * $step}")/; s/duration: 1/duration: $(awk "BEGIN {print 30 * $step}")/" "$work/a.scene" ;;
+        0.1) sed -i 's/output_step: 0.05/output_step: 0.1/' "$work/a.scene" ;;
+        esac
+        run "$work/counts.veh" "$work/a.scene" -o "$work/a.csv"
+        check "$integrator, $step: the third sample" happened 'c.n >= 3' 0.2 1e-9
+        check "$integrator, $step: what was read" awk -F, 'NR > 1 && ($1 > 0.1001 && $1 < 0.3999 || $1 > 0.4001) {
+            wrong += $2 != ($1 < 0.4 ? 1 : 2); n += 1} END {exit wrong || n < 4}' "$work/a.csv"
+    done
+done
+
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]

@@ -53,6 +53,9 @@ for name in 'steady-speed speed=16' 'steady-radius radius=30' 'step-steer speed=
     check "$manoeuvre: no number is none" sh -c "! grep -qiE '[^a-z](nan|inf)[^a-z]' '$work/out' '$work/trace.csv' '$work/page.html'"
     check "$manoeuvre: nothing is loaded" sh -c "! grep -qE 'https?:|src=|@import|url\(' '$work/page.html'"
 done
+run --manoeuvre ride "$root/tests/data/manoeuvre/trike.veh" speed=15 duration=10
+check 'a vehicle with one front wheel' exits 0
+check 'which runs midway' prints 'the foremost wheel runs midway between the tracks of the road, which are 1.2 m apart'
 # the scenes on the page are scenes
 run --manoeuvre step-steer "$linear" speed=20 ay=1 --report "$work/page.html"
 sed -n '/<summary>left/,/<\/pre>/p' "$work/page.html" | sed -e 's/.*<pre>//' -e 's/<\/pre>.*//' -e 's/&quot;/"/g' >"$work/left.scene"

@@ -61,5 +61,14 @@ python3 "$here/data/tires/limits.py" states >states.csv &&
     python3 "$here/data/tires/limits.py" check <results.csv >said || echo "no limits" >said
 count said
 
+# a rolling resistance that does not depend on the speed needs no speed to be relative to
+mkdir bare && cp rig.veh ./*.tir bare && sed -i '/^LONGVL/d' bare/truck.tir
+for engine in gic tape; do
+    "$gicrun" -q --engine $engine --eval states.csv rig.veh road.scene -o all.csv &&
+        "$gicrun" -q --engine $engine --eval states.csv bare/rig.veh road.scene -o bare.csv && cmp all.csv bare.csv >&2 &&
+        echo ok >said || echo "FAIL: a tire without LONGVL by $engine" >said
+    count said
+done
+
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ] && [ "$passed" -ge 40 ]

@@ -30,6 +30,13 @@ check 'a gear that it leaves' says 'the transmission leaves gear 3 there by itse
 run --trim "$models/hmmwv_tires.veh" speed=20 lateral=2
 check 'a vehicle without a drive' exits 0
 check 'its speed is held' says 'nothing drives: the speed is held, and changes by -0'
+# without any resistance to rolling a curve takes next to no drive, straight on none
+for vehicle in linear trike; do
+    for speed in 2 5 10 15; do
+        run --trim "$root/tests/data/manoeuvre/$vehicle.veh" speed=$speed lateral=0.5
+        check "$vehicle at $speed m/s" exits 0
+    done
+done
 run --linearize --trim "$car" speed=10 lateral=2.5 -o "$work/model.csv"
 check 'a linear model' prints 'linear model about steady cornering at 10 m/s'
 
