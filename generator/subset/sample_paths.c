@@ -9,6 +9,7 @@
 #include "subset/subset.h"
 #include "subset/subset_private.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -80,18 +81,45 @@ static double correct_sample(Work *w, double *q, int s, const double *slack)
     return step;
 }
 
+/* True if no body turns between two poses [bodies], `to` being evaluated, and the derivatives of the equations are the
+ * same at both. With the rotations fixed they change linearly with places, so they are the same between the two: there
+ * the equations are linear, and one correction is the way itself, however long. */
+static bool goes_straight(Work *w, const double *from, const double *to, int s)
+{
+    const double rounding = 1e-12;
+    double J[w->n * w->n];
+    for (int i = 0; i < 7 * w->first->bodies; ++i)
+        if (i % 7 >= 3 && !(fabs(to[i] - from[i]) <= rounding))
+            return false;
+    for (int end = 0; end < 2; ++end) {
+        subset_set_poses(w, end ? to : from, s);
+        dag_evaluate(w->dag, s, 1);
+        for (int i = 0; i < w->n * w->n; ++i) {
+            const double entry = ex_value(w->dag, w->J[i], s);
+            if (end && !(fabs(entry - J[i]) <= rounding * fabs(J[i])))
+                return false;
+            J[i] = entry;
+        }
+    }
+    return true;
+}
+
 /* Newton at one step of the path. */
 bool subset_converge(Work *w, double *q, int s, const double *slack)
 {
     const int iterations = 12;
     const double converged = 1e-12, leap = 0.5; /* a larger correction may end in another assembly mode */
+    double start[7 * w->first->bodies], far = 0;
+    memcpy(start, q, sizeof start);
     for (int i = 0; i < iterations; ++i) {
         subset_set_poses(w, q, s);
         dag_evaluate(w->dag, s, 1);
         double step = correct_sample(w, q, s, slack);
-        if (!(step < leap))
+        if (!(step < leap) && !(i == 0 && isfinite(step) && goes_straight(w, start, q, s)))
             return false;
-        if (step < converged)
+        for (int j = 0; j < 7 * w->first->bodies; ++j)
+            far = fmax(far, fabs(q[j]) / w->size);
+        if (step < fmax(converged, 8 * DBL_EPSILON * far)) /* places are rounded */
             return true;
     }
     return false;

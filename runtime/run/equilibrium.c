@@ -7,6 +7,7 @@
  * step is taken against the forces, for that would lead to where the mechanism balances on its tip. */
 #include "base/message.h"
 #include "base/text.h"
+#include "base/vec3.h"
 #include "engine/engine.h"
 #include "expression/expression.h"
 #include "gic_runtime.h"
@@ -534,6 +535,35 @@ const Equilibrium *equilibrium_find_locked(Pool *pool, const Model *model, const
     return find(pool, model, scene, solve, true);
 }
 
+/* How much the road under the wheels rises a metre along the base's heading: the line of least squares through the
+ * heights of the road under their centres. 0: flat, or there are no two wheels one behind the other. */
+static double road_climb(const Scene *scene, const Equilibrium *found)
+{
+    static const double apart = 1e-3; /* m of a wheelbase */
+    const Model *model = found->model;
+    double A[9], C[9], at[3], road[3], pose[7 * model->bodies], way[model->wheels + 1], height[model->wheels + 1];
+    double mean[2] = {0}, rise = 0, run = 0;
+    if (!scene->road || found->engine->code->poses(found->self, pose) != GIC_OK)
+        return 0;
+    mat_from_euler(pose + 3, A);
+    for (int w = 0; w < model->wheels; ++w) {
+        const double *body = pose + 7 * model->wheel[w].body;
+        mat_from_euler(body + 3, C);
+        apply3(C, model->wheel[w].center, at);
+        add_scaled3(1, body, at);
+        scene->road->height(scene->road, 0, 0, at[0], at[1], road);
+        way[w] = (A[0] * at[0] + A[3] * at[1]) / hypot(A[0], A[3]);
+        height[w] = road[0];
+        mean[0] += way[w] / model->wheels;
+        mean[1] += height[w] / model->wheels;
+    }
+    for (int w = 0; w < model->wheels; ++w) {
+        rise += (way[w] - mean[0]) * (height[w] - mean[1]);
+        run += (way[w] - mean[0]) * (way[w] - mean[0]);
+    }
+    return run > apart * apart && isfinite(rise / run) ? rise / run : 0;
+}
+
 const Scene *equilibrium_scene(Pool *pool, const Scene *scene, const Equilibrium *found)
 {
     const gic_model *code = found->engine->code;
@@ -556,7 +586,8 @@ const Scene *equilibrium_scene(Pool *pool, const Scene *scene, const Equilibrium
         return out;
     memcpy(out->position, state, sizeof out->position);
     memcpy(out->euler, state + 3, sizeof out->euler);
-    out->placed = true;
+    out->placed = out->rested = true;
+    out->climb = road_climb(scene, found);
     scene_along(out);
     return out;
 }

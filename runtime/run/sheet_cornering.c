@@ -31,8 +31,11 @@ int sheet_set_in_motion(const Sheet *sheet, Instance *self, double speed)
         discrete[code->free_base + POWERTRAIN_GEAR] = discrete[code->free_base + POWERTRAIN_BEFORE] = 0;
     }
     mat_from_euler(state + 3, A);
-    for (int i = 0; i < 3; ++i)
-        state[sheet->found->linear->places + 1 + i] = speed * A[3 * i];
+    double *velocity = state + sheet->found->linear->places + 1;
+    const double level = hypot(A[0], A[3]); /* the base may rest with a pitch, and the road is level */
+    velocity[0] = speed * A[0] / level;
+    velocity[1] = speed * A[3] / level;
+    velocity[2] = 0;
     return scene_set_fast(code, NULL, &self->head);
 }
 

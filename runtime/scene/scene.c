@@ -248,11 +248,14 @@ static void read_orientation(const Item *item, double e[4])
 
 void scene_along(Scene *scene)
 {
-    const double along[3] = {scene->speed, 0, 0};
     double A[9];
     mat_from_euler(scene->euler, A);
-    if (scene->along)
-        apply3(A, along, scene->velocity);
+    const double level = hypot(A[0], A[3]), length = level * hypot(1, scene->climb);
+    const bool upright = scene->rested && level > 1e-6; /* else x points up or down, and there is no heading */
+    const double along[3] = {upright ? A[0] / length : A[0], upright ? A[3] / length : A[3],
+                             upright ? scene->climb * level / length : A[6]};
+    for (int i = 0; i < 3 && scene->along; ++i)
+        scene->velocity[i] = scene->speed * along[i];
 }
 
 static void read_base(Reader *reader, const Item *initial)

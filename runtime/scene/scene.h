@@ -57,6 +57,8 @@ typedef struct Scene {
     double position[3], euler[4], velocity[3], angular_velocity[3]; /* of the base, free base only */
     bool along, equilibrium; /* the velocity is a `speed` along the base's x axis; start in static equilibrium */
     double speed;
+    bool rested;          /* it has come to rest: the `speed` is along the base's heading on the road, */
+    double climb;         /* which rises so much a metre there */
     double *value, *rate; /* [coordinates] at time 0; not used for driven ones */
     bool placed, *given;  /* the scene gives the position, [coordinates] the values; else they are the model's */
     double *fast;         /* [fast states] at time 0, NAN: as rolling wheels have it */
@@ -98,7 +100,7 @@ const Scene *scene_read_text(Pool *pool, const char *name, const char *text, con
 /* fit.c: end with a message if the scene (root: of its file `path`) uses names that the model lacks but a model in its
  * folder, in the folder above or beside the model has: the scene is for that model. */
 void scene_check_fit(Pool *pool, const Item *root, const char *path, const Model *model);
-/* The velocity of a scene with `speed`, along the base's x axis. */
+/* The velocity of a scene with `speed`: along the base's x axis, or along the road once it has come to rest. */
 void scene_along(Scene *scene);
 /* Warn if values of a coordinate between low and high are outside its range. */
 void scene_warn_range(const Coordinate *coordinate, Place at, double low, double high);

@@ -34,6 +34,22 @@ linear=$root/tests/data/manoeuvre/linear.veh
 run --sheet "$linear" -o "$work/linear.csv"
 gradient() { awk -F, '$1 ~ /understeer/ {k = 0.02 / 9.80665; n += 1; bad += ($2 / k - 1) ^ 2 > 1e-6} END {exit !(n == 3 && !bad)}' "$work/linear.csv"; }
 check 'the stiffness at slip zero is that of lateral slip' gradient
+# whatever the pitch at which it rests, 0.023 rad: the road is level. That tires lean and stand elsewhere changes less than 1 percent;
+# a vertical velocity of 0.023 times the speed would change loads by half
+for lengths in '-0.0756 -0.1205' '-0.1356 -0.0605'; do
+    sed "s/free: -0.1056/free: ${lengths% *}/; s/free: -0.0905/free: ${lengths#* }/; s/damping: 200,/damping: 2000,/" "$linear" >"$work/pitched.veh"
+    run --sheet "$work/pitched.veh" -o "$work/linear.csv"
+    pitched() { awk -F, '$1 == "pitch" {pitch = $2 ^ 2} $1 ~ /understeer/ {k = 0.02 / 9.80665; n += 1; bad += ($2 / k - 1) ^ 2 > 1e-4}
+        END {exit !(n == 3 && !bad && pitch > 0.022 ^ 2)}' "$work/linear.csv"; }
+    check "a car that rests with a pitch, $lengths" pitched
+done
+# a scene that begins in equilibrium with a speed begins without a heave; on a slope, along the slope: g sin(atan(0.1)) along x alone
+printf '%s\n' 'gicscene: 1' 'duration: 1' 'step: 0.001' 'initial: {equilibrium: true, speed: 30}' >"$work/level.scene"
+run --linearize "$work/pitched.veh" "$work/level.scene" -o "$work/level.csv"
+check 'no heave at its start' prints 'largest acceleration: -\?[0-9.]*e-1[0-9] '
+sed 's/^initial/road: {type: slope, x: 0.1}\n&/' "$work/level.scene" >"$work/slope.scene"
+run --linearize "$work/pitched.veh" "$work/slope.scene" -o "$work/slope.csv"
+check 'nor on a slope' prints 'largest acceleration: -0.97[0-9] m/s^2, of x$'
 sed -e '/tie:/d' -e 's/steer:/steer_l:/' "$linear" >"$work/apart.veh"
 run --sheet "$work/apart.veh"
 check 'wheels that are steered separately' prints 'not there: cornering: the wheels of axle front are steered separately, f_[lr] not by steer_[lr]'
