@@ -902,9 +902,6 @@ static int find_turns(const gic_model *model, void *self, const Rest *rest, cons
     const gic_real ahead = GIC_R(0.015625);
     gic_real *state = array_at(self, model->state_offset);
     Touch soon;
-    found->found = 0;
-    found->near = GIC_R(0.0);
-    found->rated = 0;
     for (int32_t k = 0; k < n; ++k)
         state[k] = rest->from[k] + ahead * rest->length * rest->rate[k];
     int status = touch_within(model, self, rest, ahead, &soon);
@@ -1142,7 +1139,12 @@ static int cross_contacts(const gic_model *model, void *self, int staged)
         uint64_t changed = before ^ b.above;
         rest.behind = (int64_t)(parts - part) * PART_WORK;
         copy(to, state, n);
-        status = find_turns(model, self, &rest, &a, &b, ~(changed | crossed), rate_there, &within);
+        within.found = 0;
+        within.near = GIC_R(0.0);
+        within.rated = 0;
+        if (rest.length >
+            GIC_R(0.0)) /* else a contact has changed at the very end: nothing is left, and `from` is old */
+            status = find_turns(model, self, &rest, &a, &b, ~(changed | crossed), rate_there, &within);
         for (int32_t i = 0; i < model->contact_count; ++i)
             if (changed >> i & 1) {
                 within.turn[i].share = GIC_R(1.0);

@@ -346,6 +346,10 @@ static void differential_read(Tree *tree, int index)
     if (value[SPLIT_LOCK].item)
         differential->lock = law_parse(reader->pool, value[SPLIT_LOCK].item,
                                        of(reader, &differential_key[SPLIT_LOCK], entry->what), &names);
+    if (differential->lock && differential->lock->op == LAW_NUMBER && differential->lock->number < 0)
+        diag_fail(value[SPLIT_LOCK].item->at, "write the torque up to which it holds its outputs together",
+                  "%s must not be negative, as %g is: it would drive them apart",
+                  of(reader, &differential_key[SPLIT_LOCK], entry->what), differential->lock->number);
 }
 
 /* Append a differential after those that it drives; returns its index. The depth of the recursion is at most the

@@ -153,7 +153,8 @@ static void pass(Linking *l, const Shafts *shafts, Ex torque, Ex *onto)
         Ex lock = 0;
         if (differential->lock) {
             Ex apart = ex_sub(dag, output_speed(shafts, differential, 1), output_speed(shafts, differential, 0));
-            lock = ex_mul(dag, fast_law(l, differential->lock, NULL), ex_op(dag, OP_TANH, apart, 0, 0));
+            const Ex most = ex_op(dag, OP_MAX, fast_law(l, differential->lock, NULL), 0, 0);
+            lock = ex_mul(dag, most, ex_op(dag, OP_TANH, apart, 0, 0));
         }
         for (int k = 0; k < differential->outputs; ++k) {
             const double weight = differential->ratio * (k ? 1 - differential->split : differential->split);

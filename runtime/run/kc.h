@@ -56,8 +56,9 @@ typedef struct KcAxle {
     int steer;                             /* coordinate, -1: none */
     int followers, follower[KC_FOLLOWERS]; /* coordinates that rubber moves along with those of travel: kc_rubber.c */
     double *preload;                       /* [wheels + followers] forces of rubber as set up; NULL: nothing follows */
-    const char *unit;    /* coordinate that turns the unit it belongs to, which is not that of the base; NULL: it is */
-    const char *refusal; /* why no wheel of it can be moved; NULL: they can */
+    const char *unit; /* coordinate that turns the unit it belongs to, which is not that of the base; NULL: it is */
+    bool rigid; /* no coordinate moves its wheels up and down, which is a refusal; it may be steered all the same */
+    const char *refusal;   /* why no wheel of it can be moved; NULL: they can */
     const char *unsteered; /* why it is not steered; NULL: it is */
 } KcAxle;
 

@@ -323,7 +323,7 @@ static int ascending(const void *a, const void *b)
  * where a wheel's axis of turning is more than 60 degrees from the vertical. */
 static double steering_of(const KcAxle *axle, const Effects *effects, int all, int c)
 {
-    const int n = axle->wheels;
+    const int n = axle->rigid ? 0 : axle->wheels;
     double A[KC_WHEELS * KC_WHEELS], b[KC_WHEELS], sum = 0;
     for (int i = 0; i < n; ++i) {
         b[i] = -effects->lift[i * all + c];
@@ -332,7 +332,7 @@ static double steering_of(const KcAxle *axle, const Effects *effects, int all, i
     }
     if (is_travel(axle, n, c) || !kc_solve(n, A, b))
         return 0;
-    for (int i = 0; i < n; ++i) {
+    for (int i = 0; i < axle->wheels; ++i) {
         double turn[3];
         copy3(effects->turn[i * all + c], turn);
         for (int k = 0; k < n; ++k)
@@ -390,12 +390,13 @@ static void classify(const Kc *kc, KcAxle *axle)
     find_unit(kc, axle, &effects);
     const int rank = choose(axle, all, left, axle->travel);
     qsort(axle->travel, (size_t)rank, sizeof *axle->travel, ascending);
-    if (rank == 0)
+    axle->rigid = rank == 0;
+    if (axle->rigid)
         axle->refusal = "no coordinate moves its wheels up and down";
     else if (rank < n)
         axle->refusal = pool_print(
             kc->pool, "its %d wheels can't travel each by itself: coordinates move them in %d ways", n, rank);
-    else
+    if (rank == 0 || rank == n)
         axle->steer = find_steer(kc, axle, &effects);
     if (axle->steer < 0)
         axle->unsteered = "no coordinate turns its wheels while their travel is held";

@@ -103,7 +103,7 @@ static const KcAxle *steered(const Sheet *sheet, const char **why)
         return NULL;
     for (int a = 0; a < sheet->kc->axles; ++a) {
         const KcAxle *axle = &sheet->kc->axle[a];
-        if (axle->refusal || axle->steer < 0 || !model->coordinate[axle->steer].driven)
+        if ((axle->refusal && !axle->rigid) || axle->steer < 0 || !model->coordinate[axle->steer].driven)
             continue;
         if (!axle->unit)
             return axle;
@@ -120,10 +120,11 @@ static double wheel_angle(const Sheet *sheet, const KcAxle *axle, const KcWheel 
 {
     static const double slight = 1e-6; /* of the largest angle */
     double angle[KC_WHEELS], most = 0;
-    KcLook *look = kc_look_new(sheet->kc, axle);
+    const KcAxle steering = {.steer = axle->steer};
+    KcLook *look = kc_look_new(sheet->kc, axle->rigid ? &steering : axle);
     *standing = 0;
-    double still[KC_WHEELS] = {0}, along[KC_WHEELS + 1], sum = 0;
-    if (kc_look(sheet->kc, sheet->w, look) != GIC_OK || !kc_along(axle, look, false, still, 1, along))
+    double still[KC_WHEELS] = {0}, along[KC_WHEELS + 1] = {1}, sum = 0;
+    if (kc_look(sheet->kc, sheet->w, look) != GIC_OK || (!axle->rigid && !kc_along(axle, look, false, still, 1, along)))
         return 0;
     for (int i = 0; i < axle->wheels; ++i) {
         KcPose pose, rate;

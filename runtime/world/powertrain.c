@@ -103,7 +103,8 @@ static int pass_torque(const World *world, double torque, const double *differen
     input[p->differentials - 1] = torque;
     for (int k = p->differentials - 1; k >= 0; --k) {
         const Differential *d = &p->differential[k];
-        const double lock = d->lock && d->outputs == 2 ? world_law(world, d->lock, NULL) * tanh(difference[k]) : 0;
+        const double most = d->lock && d->outputs == 2 ? fmax(world_law(world, d->lock, NULL), 0) : 0;
+        const double lock = most * tanh(difference[k]);
         for (int j = 0; j < d->outputs; ++j) {
             const double out = d->ratio * input[k] * share(d, j) + (j == 0 ? lock : -lock);
             if (d->wheel[j] < 0) {

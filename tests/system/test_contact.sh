@@ -273,5 +273,37 @@ for real in '' -DGIC_FLOAT; do
     verdict $? "snapshots $real"
 done
 
+# ---- both ends of one stop, met exactly at the end of a step: 0.11 m at 1 m/s, then half a period of 20 rad/s outside, and so on.
+# Errors of RK4 in that half period, at most (20 h)^4 / 120 rad, are those of the place at 1 m/s
+for ends in 'low: 0, high: 0.21' 'high: 0.21' 'low: 0'; do
+    cat >both.veh <<END
+gicgen: 1
+model: both
+base: ground
+gravity: [0, 0, 0]
+bodies: {a: {mass: 2, com: [0, 0, 0], inertia: [1, 1, 1]}}
+joints: {a: {type: prismatic, bodies: [ground, a], axis: [1, 0, 0]}}
+coordinates: {a: {type: translation, bodies: [ground, a], axis: [1, 0, 0], range: [-5, 5]}}
+forces: {a: {type: stop, coordinate: a, $ends, stiffness: 800}}
+END
+    for integrator in rk4 ab3; do
+        for step in 0.001 0.002 0.005 0.01; do
+            for rate in 1 -1; do
+                start=0.1
+                [ $rate = 1 ] || start=0.11 # both take 0.11 s to the end
+                printf 'gicscene: 1\nduration: 0.2\nstep: %s\noutput_step: 0.01\nintegrator: %s\nlocate: true\n' $step $integrator >both.scene
+                printf 'initial: {coordinates: {a: %s}, rates: {a: %s}}\n' $start $rate >>both.scene
+                for engine in auto tape; do
+                    run -q --engine $engine both.veh both.scene -o both.csv
+                    check "$ends, $integrator at $step s by $engine from $start" awk -F, -v v=$rate -v x0=$start -v h=$step -v ends="$ends" 'NR > 1 {
+                        meets = (v > 0 ? ends ~ /high/ : ends ~ /low/) && $1 > 0.11
+                        x = meets ? (v > 0 ? 0.21 : 0) + v * sin(20 * ($1 - 0.11)) / 20 : x0 + v * $1
+                        d = $2 - x; if (d < 0) d = -d; bad += !(d <= 1e-9 + (20 * h) ^ 4 / 120)} END {exit bad || NR < 20}' both.csv
+                done
+            done
+        done
+    done
+done
+
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]

@@ -38,6 +38,20 @@ for model in "$rig" "$car"; do
     done
 done
 
+# a lock below 0 is none, and a number below 0 a mistake
+sed "s/lock: 100 + 300 \* grip/lock: -100 - 300 * grip/" "$rig" >below.veh
+sed "s/, lock: 100 + 300 \* grip//" "$rig" >open.veh
+"$gicgen" --dump-model open.veh >dump 2>said && "$states" dump --count 20 --seed 2 -o states.csv 2>said
+for engine in tape gic; do
+    "$gicrun" -q --engine $engine --eval states.csv open.veh -o open.csv >said 2>&1 &&
+        "$gicrun" -q --engine $engine --eval states.csv below.veh -o below.csv >said 2>&1 && [ -s open.csv ] && cmp open.csv below.csv >said
+    verdict $? "a lock below 0 by $engine"
+done
+sed "s/lock: 100 + 300 \* grip/lock: -20/" "$rig" >mistaken.veh
+"$gicgen" --dump-model mistaken.veh >dump 2>said
+[ $? -eq 1 ] && grep -q 'must not be negative, as -20 is' said
+verdict $? 'a number below 0'
+
 # what a table of states leaves out is as at set-up: the engine idles, in first gear
 cut_columns() {
     awk -F, -v without="$1" 'NR == 1 { for (i = 1; i <= NF; ++i) keep[i] = $i !~ without }

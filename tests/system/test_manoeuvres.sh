@@ -56,6 +56,15 @@ done
 run --manoeuvre ride "$root/tests/data/manoeuvre/trike.veh" speed=15 duration=10
 check 'a vehicle with one front wheel' exits 0
 check 'which runs midway' prints 'the foremost wheel runs midway between the tracks of the road, which are 1.2 m apart'
+# a kart has no suspension: its wheels do not travel, but steer
+sed -e '/slider_l:/d' -e '/ rear_l: {type: prismatic/d' -e '/ f_l: {type: translation/d' -e '/ r_l: {type: translation/d' -e '/ f_l: {type: spring/d' -e '/ r_l: {type: spring/d' \
+    -e '/^forces:/d' -e '/ knuckle_l: {mass/d' -e '/ rear_l: {mass/d' -e 's/body: knuckle_l/body: steerer_l/; s/body: rear_l/body: chassis/' \
+    -e 's/steerer_l: {mass: 1/steerer_l: {mass: 25/' -e 's/inertia: \[0.1, 0.1, 0.1\]/inertia: [1, 1.5, 1]/' -e 's/mass: 1200/mass: 1250/' -e 's/400, 1500, 1600/420, 1600, 1700/' "$linear" >"$work/kart.veh"
+run --sheet "$work/kart.veh" -o "$work/kart.csv"
+gradient() { awk -F, '$1 ~ /understeer/ {k = 0.02 / 9.80665; n += 1; bad += ($2 / k - 1) ^ 2 > 1e-4} END {exit !(n == 3 && !bad)}' "$work/kart.csv"; }
+check 'a kart understeers as its tires say' gradient
+run --manoeuvre step-steer "$work/kart.veh" speed=15 ay=1
+check 'it is driven' exits 0
 # the scenes on the page are scenes
 run --manoeuvre step-steer "$linear" speed=20 ay=1 --report "$work/page.html"
 sed -n '/<summary>left/,/<\/pre>/p' "$work/page.html" | sed -e 's/.*<pre>//' -e 's/<\/pre>.*//' -e 's/&quot;/"/g' >"$work/left.scene"
