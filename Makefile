@@ -40,6 +40,13 @@ MUMPS := $(if $(shell $(CC) -E -include dmumps_c.h -x c /dev/null >/dev/null 2>&
 HDF5 := $(if $(shell for header in hdf5.h hdf5/serial/hdf5.h; do $(CC) -E -include $$header -x c /dev/null >/dev/null 2>&1 && \
     echo there; done),$(firstword $(foreach name,hdf5_serial hdf5,$(if $(findstring /,$(shell $(CC) -print-file-name=lib$(name).so)),-l$(name)))))
 
+# of the plug-in with CVODE, where it is there; from SUNDIALS 7 on Debian's wants the headers of MPI, which come with it
+mpi := $(shell pkg-config --silence-errors --cflags mpi 2>/dev/null)
+SUNDIALS := $(if $(shell $(CC) $(mpi) -E -include cvode/cvode.h -x c /dev/null >/dev/null 2>&1 && echo there),-lsundials_cvode \
+    -lsundials_nvecserial -lsundials_sunmatrixdense -lsundials_sunlinsoldense \
+    $(if $(findstring /,$(shell $(CC) -print-file-name=libsundials_core.so)),-lsundials_core \
+        $(shell pkg-config --silence-errors --libs mpi 2>/dev/null)))
+
 # between the commands of a foreach
 define newline
 
@@ -67,7 +74,8 @@ archive := $(BUILD)/gicgen.a
 .SECONDARY:
 
 # programs look for them there, beside programs or beside their folder: runtime/host/plugin.c
-plugins := $(if $(MUMPS),$(BUILD)/lib/gicgen/mumps.so) $(if $(HDF5),$(BUILD)/lib/gicgen/hdf5.so)
+plugins := $(if $(MUMPS),$(BUILD)/lib/gicgen/mumps.so) $(if $(HDF5),$(BUILD)/lib/gicgen/hdf5.so) \
+    $(if $(SUNDIALS),$(BUILD)/lib/gicgen/bdf.so)
 
 all: $(BUILD)/gicgen $(BUILD)/gicrun $(BUILD)/gicsweep $(BUILD)/gicbench $(plugins) $(BUILD)/libgic.a $(BUILD)/libgic.so $(BUILD)/live_client
 
@@ -110,7 +118,8 @@ $(BUILD)/libgic.so: $(library) $(archive) $(BUILD)/libtcc_shared.a
 	$(CC) $(CFLAGS) $(LDFLAGS) -shared -Wl,-soname,libgic.so.1 -Wl,--exclude-libs,libtcc_shared.a -o $@ $^ \
 	    $(filter-out -ltcc,$(LIBRARIES)) -lpthread
 
-$(BUILD)/runtime/plugin/mumps_plugin.o $(BUILD)/runtime/plugin/hdf5_plugin.o: COMPILE += -fvisibility=default
+$(patsubst %,$(BUILD)/runtime/plugin/%_plugin.o,mumps hdf5 cvode): COMPILE += -fvisibility=default
+$(BUILD)/runtime/plugin/cvode_plugin.o: COMPILE += $(patsubst -I%,-isystem %,$(mpi))
 
 $(BUILD)/lib/gicgen/mumps.so: $(BUILD)/runtime/plugin/mumps_plugin.o
 	@mkdir -p $(@D)
@@ -119,6 +128,10 @@ $(BUILD)/lib/gicgen/mumps.so: $(BUILD)/runtime/plugin/mumps_plugin.o
 $(BUILD)/lib/gicgen/hdf5.so: $(BUILD)/runtime/plugin/hdf5_plugin.o
 	@mkdir -p $(@D)
 	$(CC) $(CFLAGS) $(LDFLAGS) -shared -o $@ $^ $(HDF5)
+
+$(BUILD)/lib/gicgen/bdf.so: $(BUILD)/runtime/plugin/cvode_plugin.o
+	@mkdir -p $(@D)
+	$(CC) $(CFLAGS) $(LDFLAGS) -shared -o $@ $^ $(SUNDIALS)
 
 # gicgen and gicrun with errors that can be planted, to see that their validation finds them: generator/base/plant.h
 planting := $(shell grep -rlE --include='*.c' '"(base/plant|vehicle/plant_stores)\.h"' generator)

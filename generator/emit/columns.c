@@ -28,6 +28,8 @@ const RateColumns *columns_of(Generation *g)
 
 const RateColumns *weighed_columns(Generation *g)
 {
+    if (g->style->exact)
+        return NULL;
     const bool before = g->weighing;
     g->weighing = true;
     const RateColumns *columns = columns_of(g);

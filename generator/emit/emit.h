@@ -26,6 +26,7 @@ typedef struct Style {
     bool whole_self_test;    /* false: the self-test measures constraints alone */
     bool derivatives;        /* the file has functions for derivatives too; not with lanes, nor for one scene */
     bool implicit;           /* what implicit steps need; the same */
+    bool exact;              /* with `implicit`: for integrators of a host, which want the Jacobian of accelerations */
     bool lanes;              /* numbers are vectors; a check that fails closes its lanes, and the function goes on */
     int width;               /* with `lanes`: lanes of a vector, with one subset a lane; 0: one vehicle a lane */
     const int *known_stride; /* [knowns] with a width: from one number of a known to its next, each a row of lanes;

@@ -92,6 +92,8 @@ static void write_implicit_solution(void *context, Text *out, int indent)
 static bool is_short(Generation *g)
 {
     int *unknown, *position;
+    if (g->style->exact)
+        return false;
     list_unknowns(g, &unknown, &position);
     return unknowns(g) > 0 && elimination_is_short(g, unknowns(g), unknown, position);
 }

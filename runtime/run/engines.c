@@ -5,6 +5,7 @@
 #include "engine/engine.h"
 #include "model/model.h"
 #include "run/engines.h"
+#include "run/stepper.h"
 #include "tape/tape.h"
 
 #include <string.h>
@@ -65,8 +66,10 @@ const Engine *engine_open_run(Pool *pool, const char *name, const Model *model, 
                               bool drawn, const EngineOptions *options)
 {
     EngineOptions own = *options;
-    own.implicit = scene_implicit(scene);
-    if (own.implicit)
+    own.exact = scene->method == METHOD_BDF && engine_has_implicit(name) && !options->lanes;
+    own.implicit = scene_implicit(scene) || own.exact;
+    stepper_need(scene->method);
+    if (scene_implicit(scene))
         check_implicit(pool, name, scene, options);
     own.facts = path && !own.implicit ? scene_facts(pool, model, scene, path, drawn) : NULL;
     own.validation = scene_validation(pool, model, scene);

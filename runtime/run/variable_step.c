@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Variable-step integration: GSL's steppers drive a model's right-hand side.
+ * Variable-step integration: steppers (stepper.h) drive a model's right-hand side.
  *
  * All four Euler parameters of the base are integrated. The right-hand side recovers the dependent one from the other
  * three and the stepper never sees the recovered value, so that a change of the dependent parameter, settled between
@@ -9,15 +9,13 @@
  * Runge-Kutta go near; the last bit, too short for a force that begins in it to count, goes across. */
 #include "base/catch.h"
 #include "gic_runtime.h"
-#include "host/gsl_errors.h"
 #include "run/contact_watch.h"
 #include "run/road_resolution.h"
+#include "run/stepper.h"
 #include "run/variable_step.h"
 #include "scene/scene.h"
 
 #include <float.h>
-#include <gsl/gsl_errno.h>
-#include <gsl/gsl_odeiv2.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
@@ -32,8 +30,10 @@ struct Variable {
     bool jumped;       /* the last step ended with a change of the integrated numbers */
     double tolerance;
     bool fresh; /* the history is empty: continue from the instance's state */
-    gsl_odeiv2_system system;
-    gsl_odeiv2_driver *driver, *towards; /* of all other steps; of those towards contacts */
+    StepperSystem system;
+    Stepper *stepper, *towards; /* of all other steps; of those towards contacts */
+    double *jacobian;           /* [states][gic_implicit.columns]; NULL: the code has none */
+    int64_t jacobians;          /* evaluated so far */
     ContactWatch *contacts;
     double hunted;                /* s, up to where a contact changes that has been met */
     double since;                 /* s, when contacts began to be crossed one soon after the other */
@@ -93,8 +93,8 @@ static int look_at_contacts(const Variable *variable, double time, const double 
     return status;
 }
 
-/* On failure the stepper tries half the step. */
-static int right_hand_side(double time, const double *state, double *rate, void *user)
+/* On failure the stepper tries a shorter step. */
+static int right_hand_side(void *user, double time, const double *state, double *rate)
 {
     Variable *variable = user;
     refresh_inputs(variable->model, variable->self, time);
@@ -105,10 +105,67 @@ static int right_hand_side(double time, const double *state, double *rate, void 
     if (status == GIC_OK)
         status = look_at_contacts(variable, time, state);
     if (status == GIC_OK)
-        return GSL_SUCCESS;
+        return 0;
     variable->status = status;
     find_back(variable);
-    return GSL_FAILURE;
+    return -1;
+}
+
+/* ---- derivatives, for BDF ------------------------------------------------------------------------------------ */
+
+/* The Jacobian of generated code, exact. */
+static int exact_jacobian(Variable *variable, double time, const double *state, double *matrix)
+{
+    const gic_implicit *implicit = variable->model->implicit;
+    const size_t n = states(variable->model), columns = (size_t)implicit->columns;
+    const int status = implicit->jacobian(variable->self, time, state, variable->jacobian);
+    for (size_t i = 0; i < n && status == GIC_OK; ++i)
+        for (size_t j = 0; j < n; ++j)
+            matrix[i + n * j] = variable->jacobian[columns * i + j];
+    return status;
+}
+
+/* By differences, for engines that have no derivatives. */
+static int difference_jacobian(Variable *variable, double time, const double *state, const double *rate, double *matrix)
+{
+    const size_t n = states(variable->model);
+    double moved[n + 1];
+    int status = GIC_OK;
+    memcpy(moved, state, n * sizeof *moved);
+    for (size_t j = 0; j < n && status == GIC_OK; ++j) {
+        double *column = matrix + n * j;
+        moved[j] = state[j] + 1e-8 * (1 + fabs(state[j]));
+        status = variable->model->rhs(variable->self, time, moved, column);
+        for (size_t i = 0; i < n; ++i)
+            column[i] = (column[i] - rate[i]) / (moved[j] - state[j]);
+        moved[j] = state[j];
+    }
+    return status;
+}
+
+static int jacobian(void *user, double time, const double *state, const double *rate, double *matrix)
+{
+    Variable *variable = user;
+    gic_head *self = variable->self;
+    const gic_road *const probe = self->road;
+    self->road = variable->road; /* these evaluations are no step's */
+    refresh_inputs(variable->model, self, time);
+    const int status = variable->jacobian ? exact_jacobian(variable, time, state, matrix)
+                                          : difference_jacobian(variable, time, state, rate, matrix);
+    if (status != GIC_OK)
+        find_back(variable);
+    self->road = probe;
+    variable->jacobians += status == GIC_OK;
+    variable->status = status == GIC_OK ? variable->status : status;
+    return status == GIC_OK ? 0 : -1;
+}
+
+/* The count that the summary tells. */
+static void tell_jacobians(const Variable *variable, gic_head *self)
+{
+    if (variable->jacobian)
+        ((gic_implicit_head *)(void *)((char *)self + variable->model->implicit->head_offset))->jacobian_count =
+            variable->jacobians;
 }
 
 static void release(void *variable)
@@ -118,16 +175,17 @@ static void release(void *variable)
 
 Variable *variable_open(const gic_model *model, int32_t method, double tolerance)
 {
-    const gsl_odeiv2_step_type *type = method == METHOD_ADAMS ? gsl_odeiv2_step_msadams : gsl_odeiv2_step_rkck;
+    const gic_implicit *implicit = model->implicit;
+    const bool exact = method == METHOD_BDF && implicit && !implicit->mass_count;
+    stepper_need(method);
     Variable *variable = calloc(1, sizeof *variable);
     if (!variable)
         return NULL;
-    gsl_errors_return();
     variable->model = model;
     /* the first step is of first order: its error is half its square times the second derivative, about 1e3 here */
     variable->tolerance = tolerance;
     variable->first_step = 0.03 * sqrt(tolerance);
-    variable->system = (gsl_odeiv2_system){right_hand_side, NULL, dimension(model), variable};
+    variable->system = (StepperSystem){dimension(model), right_hand_side, jacobian, variable};
     variable->integrated = calloc(dimension(model), sizeof(double));
     variable->settled = calloc(dimension(model), sizeof(double));
     variable->before = malloc(model->size);
@@ -136,14 +194,15 @@ Variable *variable_open(const gic_model *model, int32_t method, double tolerance
     variable->trial = malloc(model->size);
     variable->probe = probe_new();
     variable->contacts = contact_watch_new();
-    variable->driver =
-        gsl_odeiv2_driver_alloc_standard_new(&variable->system, type, variable->first_step, tolerance, tolerance, 1, 0);
-    variable->towards = gsl_odeiv2_driver_alloc_standard_new(&variable->system, gsl_odeiv2_step_rkck,
-                                                             variable->first_step, tolerance, tolerance, 1, 0);
+    variable->stepper = stepper_open(method, &variable->system, tolerance, variable->first_step);
+    variable->towards = stepper_open(METHOD_RKCK, &variable->system, tolerance, variable->first_step);
+    if (exact)
+        variable->jacobian = calloc(dimension(model) * (size_t)implicit->columns + 1, sizeof(double));
     variable->fresh = true;
     variable->hunted = -INFINITY;
     if (variable->integrated && variable->settled && variable->before && variable->whole && variable->start &&
-        variable->trial && variable->probe && variable->contacts && variable->driver && variable->towards) {
+        variable->trial && variable->probe && variable->contacts && variable->stepper && variable->towards &&
+        (variable->jacobian || !exact)) {
         caught_own(release, variable);
         return variable;
     }
@@ -156,10 +215,9 @@ void variable_close(Variable *variable)
     if (!variable)
         return;
     caught_disown(variable);
-    if (variable->driver)
-        gsl_odeiv2_driver_free(variable->driver);
-    if (variable->towards)
-        gsl_odeiv2_driver_free(variable->towards);
+    stepper_close(variable->stepper);
+    stepper_close(variable->towards);
+    free(variable->jacobian);
     contact_watch_free(variable->contacts);
     free(variable->integrated);
     free(variable->settled);
@@ -195,15 +253,16 @@ static bool jumps(const Variable *variable)
 }
 
 /* One step of a stepper from the instance's time to *time. */
-static int advance(Variable *variable, gsl_odeiv2_driver *driver, double *time, double end)
+static int advance(Variable *variable, Stepper *stepper, double *time, double end)
 {
     variable->status = GIC_OK;
     variable->self->ahead = variable->step;
     contact_watch_try(variable->contacts);
-    const int result = gsl_odeiv2_evolve_apply(driver->e, driver->c, driver->s, &variable->system, time, end,
-                                               &variable->step, variable->integrated);
-    if (result != GSL_SUCCESS)
+    if (stepper_step(stepper, time, end, &variable->step, variable->integrated))
         return variable->status == GIC_OK ? GIC_ERROR_ARGUMENT : variable->status;
+    /* contacts and the road's probe look at the rates of both ends, the last one last */
+    if ((variable->road || variable->model->contact_count) && !(stepper_rate(stepper) && stepper_rate_there(stepper)))
+        return variable->status;
     const size_t size = sizeof(double) * states(variable->model);
     memcpy(variable->settled, variable->integrated, size);
     variable->self->subset = -1;
@@ -219,23 +278,22 @@ static double longest(const Variable *variable)
     return variable->begun && !probe_asked(variable->probe) ? INFINITY : probe_longest(variable->probe);
 }
 
-/* One step by `driver` that does not care for contacts or discrete states; without a history it tries `first` s. */
-static int smooth_step(Variable *variable, gic_head *self, gsl_odeiv2_driver *driver, double first, double end)
+/* One step by `stepper` that does not care for contacts or discrete states; without a history it tries `first` s. */
+static int smooth_step(Variable *variable, gic_head *self, Stepper *stepper, double first, double end)
 {
     const gic_model *model = variable->model;
     const size_t size = sizeof(double) * states(model);
     double time = gic_time(self), *state = array_of(self, model->state_offset);
     if (variable->fresh) {
         memcpy(variable->integrated, state, size);
-        gsl_odeiv2_step_reset(driver->s);
-        gsl_odeiv2_evolve_reset(driver->e); /* which keeps the rate at the end of the last step */
+        stepper_restart(stepper);
         variable->step = first;
     }
     const gic_road *const road = variable->road = self->road;
     self->road = probe_road(variable->probe, road);
     variable->self = self;
     memcpy(variable->before, self, model->size);
-    const int status = advance(variable, driver, &time, road ? fmin(end, time + longest(variable)) : end);
+    const int status = advance(variable, stepper, &time, road ? fmin(end, time + longest(variable)) : end);
     self->road = road;
     self->status = status;
     variable->fresh = status != GIC_OK || variable->jumped;
@@ -244,6 +302,7 @@ static int smooth_step(Variable *variable, gic_head *self, gsl_odeiv2_driver *dr
         gic_restart(self, time);
     }
     refresh_inputs(model, self, gic_time(self));
+    tell_jacobians(variable, self);
     return status;
 }
 
@@ -299,15 +358,15 @@ static int careful_step(Variable *variable, gic_head *self, double end)
     double most = towards ? longest_towards(variable, start) : INFINITY;
     while (status == GIC_OK) {
         ContactFinding finding;
-        gsl_odeiv2_driver *driver = towards ? variable->towards : variable->driver;
-        status = smooth_step(variable, self, driver, fmin(most, towards ? most : variable->first_step),
+        Stepper *stepper = towards ? variable->towards : variable->stepper;
+        status = smooth_step(variable, self, stepper, fmin(most, towards ? most : variable->first_step),
                              fmin(end, start + most));
         if (status != GIC_OK)
             break;
         const double now = gic_time(self), length = now - start;
         const bool fresh = variable->fresh;
-        const ContactStep done = {length, array_of(variable->whole, model->state_offset), driver->e->dydt_in,
-                                  driver->e->dydt_out};
+        const ContactStep done = {length, array_of(variable->whole, model->state_offset), stepper_rate(stepper),
+                                  stepper_rate_there(stepper)};
         status = contact_watch_end(variable->contacts, model, self, &done, &finding);
         if (status != GIC_OK)
             break;
@@ -341,7 +400,7 @@ static int step(Variable *variable, gic_head *self, double end)
     memcpy(variable->whole, self, variable->model->size);
     const int status = variable->model->contact_count
                            ? careful_step(variable, self, end)
-                           : smooth_step(variable, self, variable->driver, variable->first_step, end);
+                           : smooth_step(variable, self, variable->stepper, variable->first_step, end);
     if (status == GIC_OK) {
         probe_end(variable->probe);
         variable->begun = true;

@@ -85,8 +85,8 @@ enum { AUTOMATIC = 1000 }; /* what `auto` is until the scene is read */
 static const struct {
     const char *name;
     int32_t method;
-} integrators[] = {{"ab3", GIC_AB3},        {"rk4", GIC_RK4},      {"ros2", GIC_ROS2}, {"ros3", GIC_ROS3},
-                   {"adams", METHOD_ADAMS}, {"rkck", METHOD_RKCK}, {"auto", AUTOMATIC}};
+} integrators[] = {{"ab3", GIC_AB3},        {"rk4", GIC_RK4},      {"ros2", GIC_ROS2},  {"ros3", GIC_ROS3},
+                   {"adams", METHOD_ADAMS}, {"rkck", METHOD_RKCK}, {"bdf", METHOD_BDF}, {"auto", AUTOMATIC}};
 
 enum { INTEGRATORS = sizeof integrators / sizeof *integrators };
 
@@ -139,7 +139,8 @@ static void read_integrator(Reader *reader, const Item *root, const char *integr
     const Item *method = doc_find(root, "integrator"), *limit = doc_find(root, "tolerance");
     const char *word = method ? doc_word(method, "integrator") : "ab3";
     if (integrator_method(word) < 0)
-        diag_fail(method->at, "write ab3, rk4, ros2, ros3, adams, rkck or auto", "there is no integrator '%s'", word);
+        diag_fail(method->at, "write ab3, rk4, ros2, ros3, adams, rkck, bdf or auto", "there is no integrator '%s'",
+                  word);
     scene->method = integrator_method(integrator ? integrator : word);
     scene->automatic = scene->method == AUTOMATIC;
     scene->method = scene->automatic ? GIC_AB3 : scene->method;
@@ -191,7 +192,9 @@ static void read_keep(Reader *reader, const Item *item, bool replaced)
         diag_fail(item->at, "write how many steps are made with one Jacobian, for example 4",
                   "keep_jacobian must be a whole number from 1 to %g", most);
     if (!scene_implicit(reader->scene) && !replaced)
-        diag_fail(item->at, "remove it, or write `integrator: ros2` or `ros3`", "%s needs no Jacobian",
+        diag_fail(item->at, "remove it, or write `integrator: ros2` or `ros3`",
+                  reader->scene->method == METHOD_BDF ? "%s decides itself how long it keeps a Jacobian"
+                                                      : "%s needs no Jacobian",
                   integrator_name(reader->scene->method));
     reader->scene->keep = (int32_t)keep;
 }

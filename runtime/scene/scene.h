@@ -193,7 +193,8 @@ void scene_no_rig(const Scene *scene);
 /* In addition to the methods of gic_runtime.h (gic_method), which have constant steps. */
 enum {
     METHOD_ADAMS = 100, /* Adams-Moulton, variable step and order 1 to 12: in place of the paper's DDABM */
-    METHOD_RKCK         /* Runge-Kutta of Cash and Karp, order 5: cheaper than Adams down to errors of 1e-8 */
+    METHOD_RKCK,        /* Runge-Kutta of Cash and Karp, order 5: cheaper than Adams down to errors of 1e-8 */
+    METHOD_BDF          /* backward differentiation formulas, order 1 to 5: CVODE, for stiff models */
 };
 
 #endif

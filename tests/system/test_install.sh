@@ -23,7 +23,7 @@ check 'folders may be read by all' modes -type d ! -perm 0755
 check 'programs may be run by all' modes -path "$there/bin/*" ! -perm 0755
 check 'other files may be read by all and run by none' modes -type f ! -path "$there/bin/*" ! -perm 0644
 for file in bin/gicgen bin/gicrun bin/gicsweep bin/gicbench include/gic_runtime.h include/gic_road.h include/gic_batch.h include/gic_lanes.h include/gic_live.h \
-    lib/libgic_runtime.a lib/gicgen/mumps.so lib/gicgen/hdf5.so include/gic.h lib/libgic.a lib/libgic.so lib/libgic.so.1 lib/pkgconfig/gic.pc \
+    lib/libgic_runtime.a lib/gicgen/mumps.so lib/gicgen/hdf5.so lib/gicgen/bdf.so include/gic.h lib/libgic.a lib/libgic.so lib/libgic.so.1 lib/pkgconfig/gic.pc \
     lib/pkgconfig/gicgen.pc share/gicgen/gic_runtime.c share/gicgen/gic_road.c share/gicgen/models/hmmwv.veh \
     share/gicgen/models/parts/chassis.veh share/gicgen/models/scenes/paper_run.scene \
     share/gicgen/models/roads/field_track.csv share/gicgen/models/tires/hmmwv_pac2002.tir \
@@ -251,7 +251,7 @@ check 'what the demonstration needs, and neither MPI nor Fortran' \
 check 'the lines of apt-get are in its log' grep -q 'lines of apt-get' "$work/log/install.log"
 check 'and not on the screen' sh -c "! grep -q 'lines of apt-get' '$work/out' '$work/err'"
 # the package of every header, so that a header that came along with something else is noticed
-grep -rhE '^# *include <' --include='*.[ch]' "$root/generator" "$root/runtime" | grep -v -e dmumps_c -e windows.h -e '<hdf5.h>' | sort -u >"$work/headers.c"
+grep -rhE '^# *include <' --include='*.[ch]' "$root/generator" "$root/runtime" | grep -v -e dmumps_c -e windows.h -e '<hdf5.h>' -e '<cvode/' -e '<nvector/' -e '<sun' | sort -u >"$work/headers.c"
 cc -std=c11 -D_POSIX_C_SOURCE=200809L -M "$work/headers.c" | grep -o '/usr/include/[^ ]*' >"$work/headers"
 check 'there are headers of libraries' grep -q 'yaml\.h' "$work/headers"
 xargs dpkg -S <"$work/headers" 2>&1 | sed 's/:.*//' | sort -u | grep -v '^linux-libc-dev$' >"$work/owners"
