@@ -330,6 +330,7 @@ int main(int count, char **word)
         if (scene->fixed)
             diag_fail((Place){scene->source, 0, 0}, "give geometric parameters numbers in the model",
                       "code for a rig has no geometric parameters, and '%s' has some", model->name);
+        scene_no_implicit(scene, options.task == TASK_FMU ? "an FMU" : "code for one scene");
         model = scene_rig(pool, model, &scene);
         setting.scene = scene;
         if (options.task != TASK_FMU) {

@@ -233,6 +233,18 @@ refused 'a page of --drive does not take implicit steps' 'rk4' --drive none.csv.
 refused 'the run to an operating point does not take implicit steps' 'rk4' --linearize --at 0.5 "$models/pendulum.veh" good.scene -o none.npz
 scene 1 0.01 'integrator: ros4' >bad.scene
 refused "there is no integrator 'ros4'" 'ros2, ros3' "$models/pendulum.veh" bad.scene -o none.csv
+# code and units of a scene: neither another integrator than the scene's, nor one that has not been chosen
+for integrator in ros2 ros3 auto; do
+    scene 1 0.01 "integrator: $integrator" >good.scene
+    wanted="does not take implicit steps ($integrator) yet"
+    [ $integrator != auto ] || wanted='does not choose an integrator (auto) yet'
+    for way in '-o none.c' '--fmu 3 -o none.fmu' '--report none.html'; do
+        # shellcheck disable=SC2086  # options
+        "$gicgen" --scene good.scene $way "$models/hmmwv.veh" >out 2>err
+        { [ $? -eq 1 ] && grep -q "^good.scene:.*error: .*$wanted" err && grep -q 'remedy: ' err && [ -z "$(ls none.* 2>/dev/null)" ]; }
+        verdict $? "gicgen --scene $way with $integrator is refused"
+    done
+done
 for way in '--batch 4' '--lanes 4' "--scene $models/scenes/paper_run.scene" --sequence '--fmu 3'; do
     # shellcheck disable=SC2086  # options
     "$gicgen" --implicit $way "$models/hmmwv.veh" -o none.c >out 2>err
