@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
- * entry ENGINE|lanes MODEL: hostile numbers into every function of a model's descriptor: states, inputs, parameters,
- * ports, discrete states, times, steps, ratios, methods, links, roads, and inputs that go bad within a step. Each call
- * must end in a status that leaves state, rate, time, history and results as they were, bit for bit, or in finite
- * results; and with the number taken back the instance must go on as one that never saw it. Prints a row of the table
- * of attacks. */
+ * entry ENGINE|lanes|implicit MODEL: hostile numbers into every function of a model's descriptor: states, inputs,
+ * parameters, ports, discrete states, times, steps, ratios, methods, links, roads, and inputs that go bad within a
+ * step. Each call must end in a status that leaves state, rate, time, history and results as they were, bit for bit, or
+ * in finite results; and with the number taken back the instance must go on as one that never saw it. Prints a row of
+ * the table of attacks. */
 #include "base/pool.h"
 #include "engine/engine.h"
 #include "gic_runtime.h"
@@ -105,6 +105,17 @@ static int call_rk4(Trial *t)
     return gic_step(t->code, t->self, t->length, GIC_RK4);
 }
 
+/* Where the code takes implicit steps. */
+static int call_ros2(Trial *t)
+{
+    return t->code->implicit ? gic_step(t->code, t->self, t->length, GIC_ROS2) : GIC_OK;
+}
+
+static int call_ros3(Trial *t)
+{
+    return t->code->implicit ? gic_step(t->code, t->self, t->length, GIC_ROS3) : GIC_OK;
+}
+
 static int call_dual(Trial *t)
 {
     return gic_step_dual(t->code, t->self, t->length, t->ratio);
@@ -151,10 +162,11 @@ static int call_shift(Trial *t)
 static const struct {
     const char *name;
     Call *call;
-} functions[] = {{"rhs", call_rhs},        {"settle", call_settle},       {"step", call_step},
-                 {"step (rk4)", call_rk4}, {"step_dual", call_dual},      {"outputs", call_outputs},
-                 {"poses", call_poses},    {"self_test", call_self_test}, {"link", call_link},
-                 {"fast", call_fast},      {"roll", call_roll},           {"shift", call_shift}};
+} functions[] = {{"rhs", call_rhs},          {"settle", call_settle},       {"step", call_step},
+                 {"step (rk4)", call_rk4},   {"step_dual", call_dual},      {"outputs", call_outputs},
+                 {"poses", call_poses},      {"self_test", call_self_test}, {"link", call_link},
+                 {"fast", call_fast},        {"roll", call_roll},           {"shift", call_shift},
+                 {"step (ros2)", call_ros2}, {"step (ros3)", call_ros3}};
 enum { FUNCTIONS = sizeof functions / sizeof *functions };
 
 /* ---- a call, and what it may do ------------------------------------------------------------------------------------
@@ -191,10 +203,16 @@ static bool same(const Trial *t, size_t offset, size_t bytes)
     return !memcmp((const char *)t->self + offset, (const char *)t->before + offset, bytes);
 }
 
+static bool steps(const Trial *t, Call *call)
+{
+    return call == call_step || call == call_rk4 || call == call_dual ||
+           (t->code->implicit && (call == call_ros2 || call == call_ros3));
+}
+
 /* What a function of inputs filled in is the caller's; steps alone take it back. */
 static bool keeps_inputs(const Trial *t, Call *call)
 {
-    return !t->self->input_function || call == call_step || call == call_rk4 || call == call_dual;
+    return !t->self->input_function || steps(t, call);
 }
 
 /* Both begin with the rate of the present state, which is there then, and may fail over what follows from it. */
@@ -234,7 +252,7 @@ static void check_result(Trial *t, Call *call)
 {
     const gic_model *code = t->code;
     const int32_t count = (int32_t)states(t);
-    if ((call == call_step || call == call_rk4 || call == call_dual) &&
+    if (steps(t, call) &&
         (!gic_finite(array(t->self, code->state_offset), count) || !(gic_time(t->self) > gic_time(t->before))))
         find(t, "no state after a step");
     if (call == call_rhs && !gic_finite(t->rate, count))
@@ -491,7 +509,8 @@ static void attack_setup(Trial *t)
             for (int f = 0; f < FUNCTIONS && status != GIC_OK; ++f) {
                 t->callee = functions[f].name;
                 t->time = gic_time(t->self);
-                if (f != 1 && f != 9 && f != 10 && f != 11 && (f != 8 || code->link) && functions[f].call(t) == GIC_OK)
+                if (f != 1 && f != 9 && f != 10 && f != 11 && (f != 8 || code->link) && (f < 12 || code->implicit) &&
+                    functions[f].call(t) == GIC_OK)
                     find(t, "works after a set-up that failed");
             }
             if (code->setup_with(t->self, given) != GIC_OK)
@@ -511,8 +530,9 @@ static gic_head *instance(Pool *pool, const Engine *engine)
 int main(int argc, char **argv)
 {
     const bool lanes = argc == 3 && !strcmp(argv[1], "lanes");
-    if (argc != 3 || (!lanes && !engine_known(argv[1]))) {
-        fputs("usage: entry ENGINE|lanes MODEL\n", stderr);
+    const bool implicit = argc == 3 && !strcmp(argv[1], "implicit");
+    if (argc != 3 || (!lanes && !implicit && !engine_known(argv[1]))) {
+        fputs("usage: entry ENGINE|lanes|implicit MODEL\n", stderr);
         return 2;
     }
     signal(SIGSEGV, fall);
@@ -521,8 +541,9 @@ int main(int argc, char **argv)
     signal(SIGALRM, fall);
     Pool *pool = pool_new();
     const Model *model = model_read(pool, argv[2]);
-    const EngineOptions options = {.compiler = compiler_default(), .flags = "", .lanes = lanes ? 4 : 0, .quiet = true};
-    const Engine *engine = engine_open(pool, lanes ? "cc" : argv[1], model, &options);
+    const EngineOptions options = {
+        .compiler = compiler_default(), .flags = "", .lanes = lanes ? 4 : 0, .implicit = implicit, .quiet = true};
+    const Engine *engine = engine_open(pool, lanes ? "cc" : implicit ? "tcc" : argv[1], model, &options);
     const gic_model *code = engine->code;
     Trial t = {.engine = engine,
                .code = code,

@@ -12,9 +12,11 @@ models=$(echo models/*.veh models/controllers/skyhook.veh tests/data/tuning/car.
 many=models/quarter_car.veh
 # of the engines that compile or run for long, few models
 some="gcp1 lanes"
+implicit="models/quarter_car.veh models/hmmwv.veh models/hmmwv_tires.veh"
 if [ "$STRESS" != short ]; then
     engines="tcc cc tape gic gcp1 gcp2 lanes"
     some=
+    implicit=$models
     many="$many models/hmmwv.veh models/hmmwv14.veh models/five_link.veh models/solid_axle.veh models/trailing_arm.veh"
     many="$many tests/data/tuning/car.veh"
 fi
@@ -26,6 +28,9 @@ for engine in $engines; do
 done
 for engine in $some; do
     "$entry" "$engine" models/quarter_car.veh || found=1
+done
+for model in $implicit; do # code of gicgen --implicit by tcc
+    "$entry" implicit "$model" || found=1
 done
 for model in $many; do
     "$entry_batch" "$model" || found=1
