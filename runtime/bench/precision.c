@@ -12,6 +12,7 @@
 #include "read/read.h"
 #include "run/engines.h"
 #include "run/run.h"
+#include "run/stepper.h"
 #include "scene/scene.h"
 
 #include <errno.h>
@@ -20,10 +21,11 @@
 #include <unistd.h>
 
 enum {
-    MOST_ROWS = 64,
+    MOST_ROWS = 96,
     PARTS = 4,          /* the scene's step, its half, .. */
     TOLERANCES = 7,     /* with --quick every other one */
-    GROUP_REFERENCE = 6 /* colour of the line at its uncertainty */
+    IMPLICIT = 5,       /* colour of ros2, ros3, bdf */
+    GROUP_REFERENCE = 6 /* of the line at the reference's uncertainty */
 };
 
 static const double tolerance[TOLERANCES] = {1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9};
@@ -32,6 +34,8 @@ static const double tolerance[TOLERANCES] = {1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8,
 typedef struct Result {
     const char *way;
     int group; /* of curves with one colour */
+    const Engine *engine;
+    gic_head *self;
     Ride ride;
     RideEnd end;
     double error;   /* m */
@@ -43,8 +47,8 @@ typedef struct Result {
 typedef struct Study {
     const Bench *bench;
     const char *model_name, *scene_name; /* of their files */
-    const Engine *engine;
-    gic_head *self;
+    const Engine *engine, *exact;        /* exact: with the Jacobian that bdf wants; NULL: no scene is stiff */
+    gic_head *self, *exact_self;
     const Scene *scene;
     Reference reference;
     int rows;
@@ -73,7 +77,8 @@ static const Scene *read_one(const Bench *bench, const Model *model, const char 
     const Scene *scene = scene_read(bench->pool, path, model, NULL, 0);
     const Place at = {scene->source, 0, 0};
     scene_no_rig(scene);
-    scene_no_implicit(scene, "gicbench");
+    if (scene->automatic)
+        scene_no_implicit(scene, "gicbench");
     if (!(scene->step > 0))
         diag_fail(at, "write a step: constant steps are tried with it, its half, its quarter and its eighth",
                   "the scene has no step");
@@ -101,12 +106,24 @@ static Vehicle *read_files(const Bench *bench, int *vehicles, int *scenes)
     return vehicle;
 }
 
+/* Scenes with an implicit integrator say by it that their vehicle is stiff. */
+static bool is_stiff(const Scene *scene)
+{
+    return scene_implicit(scene) || scene->method == METHOD_BDF;
+}
+
 /* ---- the ways --------------------------------------------------------------------------------------------- */
 
 static void add_row(Study *study, const char *way, int group, Ride ride)
 {
     Result *row = &study->row[study->rows++];
-    *row = (Result){.way = way, .group = group, .ride = ride, .order = NAN};
+    const bool exact = study->exact && ride.setting.method == METHOD_BDF;
+    *row = (Result){.way = way,
+                    .engine = exact ? study->exact : study->engine,
+                    .self = exact ? study->exact_self : study->self,
+                    .group = group,
+                    .ride = ride,
+                    .order = NAN};
     row->second = pool_alloc(study->bench->pool, sizeof *row->second * (size_t)study->bench->repetitions);
 }
 
@@ -145,6 +162,17 @@ static void add_all(Study *study)
     add_constant(study, "rk4", 2, GIC_RK4, 1);
     add_variable(study, "adams", 3, METHOD_ADAMS);
     add_variable(study, "rkck", 4, METHOD_RKCK);
+    if (!is_stiff(study->scene))
+        return;
+    const int32_t keep = study->scene->keep;
+    for (int32_t method = GIC_ROS2; method <= GIC_ROS3; ++method) {
+        add_parts(study, integrator_name(method), "", IMPLICIT, method, (Ride){.ratio = 1});
+        if (keep > 1)
+            add_parts(study, integrator_name(method), pool_print(study->bench->pool, ", a Jacobian for %d steps", keep),
+                      IMPLICIT, method, (Ride){.ratio = 1, .keep = keep});
+    }
+    if (study->exact)
+        add_variable(study, "bdf", IMPLICIT, METHOD_BDF);
 }
 
 /* ---- measurements ----------------------------------------------------------------------------------------- */
@@ -170,7 +198,7 @@ static double measure_errors(Study *study)
         Track track = track_new(pool, study->scene, study->engine->code);
         bench_progress(study->bench, "%s: error of %s, %s", study->scene_name, row->way,
                        setting_text(pool, row->ride.setting));
-        row->end = ride_run(study->engine, study->self, study->scene, &row->ride, &track);
+        row->end = ride_run(row->engine, row->self, study->scene, &row->ride, &track);
         row->error = track_distance(&track, &study->reference.track);
         seconds += row->end.second;
         pool_free(pool);
@@ -191,7 +219,7 @@ static void measure_times(Study *study)
             Result *row = &study->row[i];
             if (row->end.status == GIC_OK)
                 row->second[r] =
-                    ride_run(study->engine, study->self, study->scene, &row->ride, NULL).second / simulated(study);
+                    ride_run(row->engine, row->self, study->scene, &row->ride, NULL).second / simulated(study);
         }
     }
 }
@@ -280,6 +308,29 @@ static const Chart *tell_chart(const Study *study, const char *name)
     return chart;
 }
 
+/* Ways whose runs end well and can be told from the reference. */
+static void tell_equal_errors(const Study *study, const char *name)
+{
+    Pool *pool = study->bench->pool;
+    WayRows way[MOST_ROWS];
+    int ways = 0;
+    for (int i = 0; i < study->rows;) {
+        const char *this = study->row[i].way;
+        double *error = pool_alloc(pool, sizeof *error * MOST_ROWS);
+        const double **second = pool_alloc(pool, sizeof *second * MOST_ROWS);
+        WayRows *rows = &way[ways];
+        *rows = (WayRows){this, 0, error, second};
+        for (; i < study->rows && !strcmp(study->row[i].way, this); ++i)
+            if (is_told(study, &study->row[i])) {
+                error[rows->rows] = study->row[i].error;
+                second[rows->rows++] = study->row[i].second;
+            }
+        ways += rows->rows > 0;
+    }
+    equal_error_tell(study->bench->report, name, study->model_name, study->scene_name, way, ways,
+                     study->bench->repetitions);
+}
+
 static Sheet *tell_scene(const Study *study, int number, const Chart **chart)
 {
     Report *report = study->bench->report;
@@ -298,6 +349,8 @@ static Sheet *tell_scene(const Study *study, int number, const Chart **chart)
                                 "right-hand sides|fast rates");
     for (int i = 0; i < study->rows; ++i)
         tell_row(study, table, &study->row[i]);
+    if (is_stiff(study->scene))
+        tell_equal_errors(study, pool_print(pool, "equal%d", number));
     tell_best(study);
     return table;
 }
@@ -319,7 +372,8 @@ static void tell_begin(const Bench *bench, const char *engine)
         "Ways: constant steps find the time of a change of gear within the step and go on from there; "
         "`late gears`, for scenes in which the gear changes, leaves it to the end of the step in which it is due. "
         "`contacts located`, for scenes in which wheels or stops get or lose their load, makes steps in parts there "
-        "(`locate: true`). Variable steps end at both.");
+        "(`locate: true`). Variable steps end at both. Scenes with an implicit integrator (`ros2`, `ros3`, `bdf`) are "
+        "gone by all of these too, and times are compared at equal errors.");
 }
 
 /* ---- files of their own ------------------------------------------------------------------------------------- */
@@ -350,7 +404,18 @@ static int measure_vehicle(const Bench *bench, const Vehicle *vehicle, int done,
 {
     Pool *pool = bench->pool;
     bench_progress(bench, "%s: engine %s", vehicle->name, bench->engine_name);
-    const Engine *engine = engine_open(pool, bench->engine_name, vehicle->model, &bench->options);
+    bool stiff = false;
+    for (int i = 0; i < vehicle->scenes; ++i)
+        stiff = stiff || is_stiff(vehicle->scene[i]);
+    EngineOptions options = bench->options;
+    if (stiff && !engine_has_implicit(bench->engine_name))
+        diag_fail((Place){vehicle->scene[0]->source, 0, 0}, "take --engines cc or tcc",
+                  "the engine '%s' has no derivatives for implicit steps", bench->engine_name);
+    options.implicit = stiff;
+    const Engine *engine = engine_open(pool, bench->engine_name, vehicle->model, &options), *exact = NULL;
+    options.exact = true;
+    if (stiff && stepper_there(METHOD_BDF))
+        exact = engine_open(pool, bench->engine_name, vehicle->model, &options);
     for (int i = 0; i < vehicle->scenes; ++i) {
         Study *study = pool_alloc(pool, sizeof *study);
         *study = (Study){.bench = bench,
@@ -358,11 +423,15 @@ static int measure_vehicle(const Bench *bench, const Vehicle *vehicle, int done,
                          .scene_name = vehicle->scene_name[i],
                          .engine = engine,
                          .self = instance_new(pool, engine),
+                         .exact = exact,
+                         .exact_self = exact ? instance_new(pool, exact) : NULL,
                          .scene = vehicle->scene[i]};
         measure(study, scenes - done - i - 1);
         table[i] = tell_scene(study, done + i + 1, &chart[i]);
     }
     engine_close(engine);
+    if (exact)
+        engine_close(exact);
     return vehicle->scenes;
 }
 

@@ -19,7 +19,8 @@ typedef struct Ride {
     Setting setting;
     int32_t ratio; /* AB3: fast steps in a step */
     GearChange change;
-    bool locate; /* constant steps are made in parts at contacts */
+    bool locate;  /* constant steps are made in parts at contacts */
+    int32_t keep; /* implicit steps with one Jacobian */
 } Ride;
 
 /* Positions at output times: of the base, or of all bodies where the base is fixed. */
@@ -54,5 +55,23 @@ double track_distance(const Track *a, const Track *b);
 RideEnd ride_run(const Engine *engine, gic_head *self, const Scene *scene, const Ride *ride, Track *track);
 /* Ends in diag_fail where the scene does not run to its end. */
 Reference precision_reference(const Bench *bench, const Engine *engine, gic_head *self, const Scene *scene);
+
+/* ---- equal_error.c ----------------------------------------------------------------------------------------------- */
+
+/* The rows of one way whose errors are known, in the order of their accuracy. */
+typedef struct WayRows {
+    const char *way;
+    int rows;
+    const double *error;         /* [rows] m */
+    const double *const *second; /* [rows][repetitions] CPU time */
+} WayRows;
+
+/* CPU time within an error: of the first row that keeps it, or between that and the one before, along a straight line
+ * in logarithms. NAN: no row keeps it. */
+double equal_error_second(const WayRows *rows, double error, int repetition);
+/* A table of times within errors of whole powers of ten, over that of the first way: median, lowest and highest ratio
+ * of all repetitions. model, scene: names. */
+void equal_error_tell(Report *report, const char *name, const char *model, const char *scene, const WayRows *way,
+                      int ways, int repetitions);
 
 #endif

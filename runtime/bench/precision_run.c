@@ -141,6 +141,7 @@ static Going going_begin(Pool *pool, const Engine *engine, gic_head *self, const
     going.scene = bench_scene(scene, ride->setting);
     going.scene.ratio = ride->ratio;
     going.scene.locate = ride->locate;
+    going.scene.keep = ride->keep > 0 ? ride->keep : 1;
     going.scene.rest = NULL;
     going.scene.steady = 0;
     gic_head **const place[] = {&going.copy, &going.before, &going.trial};
@@ -187,7 +188,7 @@ static double tightest(const Bench *bench, const Engine *engine, gic_head *self,
 {
     static const double tolerance[] = {1e-13, 1e-12, 1e-11, 1e-10, 1e-9};
     for (size_t i = 0; i < sizeof tolerance / sizeof *tolerance; ++i) {
-        const Ride ride = {{method, tolerance[i]}, 1, GEAR_BISECTED, false};
+        const Ride ride = {{method, tolerance[i]}, 1, GEAR_BISECTED, false, 1};
         bench_progress(bench, "reference with %s, tolerance %g", integrator_name(method), tolerance[i]);
         *end = ride_run(engine, self, scene, &ride, track);
         if (end->status == GIC_OK)
@@ -217,7 +218,7 @@ Reference precision_reference(const Bench *bench, const Engine *engine, gic_head
                       instance_status(pool, engine->code, self, end.status));
     }
     bench_progress(bench, "reference with rk4, a sixteenth of the step");
-    const Ride fine = {{GIC_RK4, scene->step / 16}, 1, GEAR_BY_RUNTIME, true};
+    const Ride fine = {{GIC_RK4, scene->step / 16}, 1, GEAR_BY_RUNTIME, true, 1};
     track[2] = track_new(pool, scene, engine->code);
     ride_run(engine, self, scene, &fine, &track[2]);
     Reference reference = {.track = track[0],

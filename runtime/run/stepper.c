@@ -9,7 +9,6 @@
 
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_odeiv2.h>
-#include <stdbool.h>
 #include <stdlib.h>
 
 struct Stepper {
@@ -38,6 +37,15 @@ static const BdfPlugin *plugin(void)
                   "the integrator bdf needs SUNDIALS: %s", why);
     pool_free(pool);
     return found;
+}
+
+bool stepper_there(int32_t method)
+{
+    const char *why;
+    Pool *pool = pool_new();
+    const bool there = method != METHOD_BDF || plugin_load(pool, "bdf.so", BDF_SYMBOL, &why);
+    pool_free(pool);
+    return there;
 }
 
 void stepper_need(int32_t method)

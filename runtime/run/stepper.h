@@ -5,6 +5,7 @@
 #ifndef RUN_STEPPER_H
 #define RUN_STEPPER_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -18,6 +19,8 @@ typedef struct StepperSystem {
     void *user;
 } StepperSystem;
 
+/* Is a plug-in that the method needs there? */
+bool stepper_there(int32_t method);
 /* Fail unless a plug-in that the method needs is there. */
 void stepper_need(int32_t method);
 

@@ -359,6 +359,38 @@ check 'gears within steps leave a tenth of the error of late ones' awk -F, '
         exit bad || n != 3}' "$work/rows.csv"
 check 'the reference says how uncertain it is' [ 2 -eq "$(grep -c 'Reference: rkck .* differs by .* from adams .* from rk4' "$work/out")" ]
 
+# a stiff mount, 159 Hz, by implicit ways as well: ros2 has order 2 and ros3 order 3, with one Jacobian as with many, for it
+# is linear; times at equal errors are between those of the rows beside them, and ratios are of these times
+cat >"$work/mount.veh" <<'END'
+gicgen: 1
+model: mount
+gravity: [0, 0, 0]
+base: ground
+bodies: {b: {mass: 2, com: [0, 0, 0], inertia: [1, 1, 1]}}
+joints: {j: {type: prismatic, bodies: [ground, b], axis: [1, 0, 0]}}
+coordinates: {x: {type: translation, bodies: [ground, b], axis: [1, 0, 0], range: [-1, 1]}}
+forces:
+  rubber: {type: bushing, bodies: [ground, b], point: [0, 0, 0], stiffness: [2e6, 0, 0, 0, 0, 0], damping: [400, 0, 0, 0, 0, 0]}
+END
+printf 'gicscene: 1\nduration: 0.1\nstep: 0.0005\noutput_step: 0.01\nintegrator: ros3\nkeep_jacobian: 4\n' >"$work/mount.scene"
+echo 'initial: {coordinates: {x: 0.001}}' >>"$work/mount.scene"
+precision -o "$work/stiff" "$work/mount.veh" "$work/mount.scene"
+check 'a stiff vehicle' [ $? -eq 0 ]
+sed 's/"\(ros[23]\), [^"]*"/\1 kept/; s/"ab3, one rate"/ab3/' "$work/stiff/precision1.csv" >"$work/rows.csv"
+sed 's/"\(ros[23]\), [^"]*"/\1 kept/; s/"ab3, one rate"/ab3/' "$work/stiff/equal1.csv" >"$work/equal.csv"
+check 'implicit ways have their orders' awk -F, '$3 ~ /^ros/ && $4 == "0.0625 ms" {++n; d = $6 - substr($3, 4, 1)
+    if (d < -0.2 || d > 0.2) bad = 1} END {exit bad || n != 4}' "$work/rows.csv"
+check 'bdf comes nearer with its tolerance' awk -F, '$3 == "bdf" {++n; if (n > 1 && !($5 < before / 10)) bad = 1; before = $5}
+    END {exit bad || n != 4}' "$work/rows.csv"
+check 'times at equal errors are those of the rows beside them' awk -F, '
+    NR == FNR {if ($5 + 0 > 0 && $5 !~ /below/) {k = ++rows[$3]; error[$3, k] = $5; low[$3, k] = $8; high[$3, k] = $9} next}
+    FNR > 1 {++n; for (k = 1; k <= rows[$4] && error[$4, k] > $3; ++k) ; j = k > 1 ? k - 1 : 1
+        least = low[$4, j] < low[$4, k] ? low[$4, j] : low[$4, k]; most = high[$4, j] > high[$4, k] ? high[$4, j] : high[$4, k]
+        if (k > rows[$4] || !($6 >= 0.999 * least && $7 <= 1.001 * most && $6 <= $5 && $5 <= $7)) bad = 1
+        if ($4 == "ab3") {a = $5; b = $6; c = $7; at = $3; if (!($8 == 1 && $9 == 1 && $10 == 1)) bad = 1}
+        else if (at == $3 && !($9 <= $8 && $8 <= $10 && $9 >= 0.999 * $6 / c && $10 <= 1.001 * $7 / b)) bad = 1
+        else if (at != $3 && $8 != "-") bad = 1; ++way[$4]}
+    END {for (w in way) ++ways; exit bad || ways != 9}' "$work/rows.csv" "$work/equal.csv"
 # a wheel that hops and a load between stops: with and without location, side by side
 printf 'gicscene: 1\nduration: 1\nstep: 0.002\noutput_step: 0.02\n' >"$work/hop.scene"
 echo 'initial: {coordinates: {z: 0.05}, rates: {s: 0.8}}' >>"$work/hop.scene"
@@ -407,6 +439,7 @@ fails 2 "no engine 'fast'" --engines fast "$work/soft.veh" "$work/cart.scene"
 fails 2 'at least one name' --engines '' "$work/soft.veh" "$work/cart.scene"
 fails 1 "can't make the folder" -o "$work/no/page" "$work/soft.veh" "$work/cart.scene"
 sed 's/0.4$/0.03/' "$work/cart.scene" >"$work/short.scene"
+fails 1 "the engine 'tape' has no derivatives" --precision --engines tape "$work/mount.veh" "$work/mount.scene"
 fails 2 'a model and its scenes' --precision "$work/soft.veh"
 fails 2 'a scene is missing' --precision "$work/soft.veh" "$work/cart.scene" "$work/soft.veh"
 fails 2 'writes .svg or .png' --precision --plot "$work/picture.pdf" "$work/soft.veh" "$work/cart.scene"
