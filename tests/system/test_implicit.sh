@@ -88,6 +88,41 @@ far=$(apart ros3.csv light.csv)
 check "hmmwv14 at 5 ms, ros3: $far" within "$far" 0.005
 check "hmmwv14 at 5 ms, ros3: $far, ab3: $(apart ab3.csv light.csv)" within "$(awk "BEGIN { print 5 * $far }")" "$(apart ab3.csv light.csv)"
 
+# ---- a pendulum on a bushing that turns by 2 rad: I q'' = -k q at any angle, q = 2 cos w t, and its energy as above; the
+# Jacobian is exact there, so that steps are those of the stability functions at any amplitude
+cat >turning.veh <<'END'
+gicgen: 1
+model: turning
+gravity: [0, 0, 0]
+base: ground
+bodies: {b: {mass: 2, com: [0, 0, -0.5], inertia: [1, 0.5, 1]}}
+joints: {j: {type: revolute, bodies: [ground, b], point: [0, 0, 0], axis: [0, 1, 0]}}
+coordinates: {q: {type: angle, bodies: [ground, b], axis: [0, 1, 0], range: [-3, 3]}}
+forces:
+  rubber: {type: bushing, bodies: [ground, b], point: [0, 0, 0], stiffness: [0, 0, 0, 0, 1e4, 0], damping: [0, 0, 0, 0, 0, 0]}
+outputs: {q: {type: coordinate, coordinate: q}}
+END
+for method in 2 3; do
+    # 0.5 + 2 * 0.25 = 1 kg m^2: w = 100 rad/s, w h = 0.2, 500 steps
+    scene 1 0.002 "integrator: ros$method" 'initial: {coordinates: {q: 2}}' 'outputs: [q]' >turning.scene
+    run -q turning.veh turning.scene -o turning.csv
+    off=$(tail -n 1 turning.csv | awk -F, -v order=$method '{ y = 0.2
+        if (order == 2) { g = 1 - sqrt(0.5); re = 1; im = (1 - 2 * g) * y }
+        else { g = 0.435866521508459; re = 1 - (0.5 - 4 * g + 6 * g * g) * y * y
+            im = (1 - 4 * g) * y - (1 / 6 - 2 * g + 6 * g * g - 4 * g * g * g) * y * y * y }
+        right = 1; for (k = 0; k < 500; ++k) right *= (re * re + im * im) / (1 + g * g * y * y) ^ (order == 2 ? 2 : 4)
+        d = ($2 * $2 * 1e4 + $3 * $3) / 4e4 / right - 1; print (d < 0 ? -d : d) }')
+    check "energy of a pendulum on a bushing at 2 rad, ros$method: $off" within "${off:-1}" 1e-9
+    # and its place in the limit, by AB3 too: cos 100 at 0.05 ms, errors of order 2 and 3 in w h = 0.005 over 2e4 steps
+    scene 1 0.00005 "integrator: ros$method" 'initial: {coordinates: {q: 2}}' 'outputs: [q.value]' >limit.scene
+    run -q turning.veh limit.scene -o limit.csv
+    run -q --integrator ab3 turning.veh limit.scene -o explicit.csv
+    awk 'BEGIN { print "time,q"; for (k = 0; k <= 10; ++k) printf "%.17g,%.17g\n", k / 10, 2 * cos(10 * k) }' >cosine.csv
+    most=$([ $method = 2 ] && echo 1e-3 || echo 1e-5)
+    check "in the limit the place is that of the cosine, ros$method: $(apart limit.csv cosine.csv)" within "$(apart limit.csv cosine.csv)" "$most"
+    check "and that of ab3, ros$method: $(apart limit.csv explicit.csv)" within "$(apart limit.csv explicit.csv)" "$most"
+done
+
 # ---- van der Pol's oscillator and Prothero and Robinson's problem as a model's own states
 cat >problems.veh <<'END'
 gicgen: 1
