@@ -292,7 +292,7 @@ static Implicit implicit_of(const gic_model *model, void *self)
 /* True for a method that this model can take. */
 static int is_method(const gic_model *model, int32_t method)
 {
-    return method == GIC_AB3 || method == GIC_RK4 || (model->implicit && (method == GIC_ROS2 || method == GIC_ROS3));
+    return method == GIC_AB3 || method == GIC_RK4 || (model->implicit && method >= GIC_ROS2 && method <= GIC_IMEX);
 }
 
 /* The unknown that is this state. */
@@ -304,16 +304,20 @@ static int32_t unknown_of(const Implicit *w, int32_t state)
     return i;
 }
 
-/* b = W b; stage[] is lost. */
+/* b = W b; stage[] is lost. The mass matrix is symmetric, so that its rows may be taken for columns: sums that follow
+ * one another are of different numbers then, and do not wait for one another. */
 static void implicit_weigh(const Implicit *w)
 {
-    const int32_t *const row = w->how->mass_row;
+    const int32_t *const row = w->how->mass_row, *const column = w->how->mass_column;
+    if (w->how->mass_count == 0)
+        return;
+    for (int32_t i = 0; i < w->n; ++i)
+        w->stage[i] = GIC_R(0.0);
     for (int32_t k = 0; k < w->how->mass_count; ++k)
-        w->stage[row[k]] = GIC_R(0.0);
+        w->stage[column[k]] += w->mass[k] * w->b[row[k]];
     for (int32_t k = 0; k < w->how->mass_count; ++k)
-        w->stage[row[k]] += w->mass[k] * w->b[w->how->mass_column[k]];
-    for (int32_t k = 0; k < w->how->mass_count; ++k)
-        w->b[row[k]] = w->stage[row[k]];
+        if (row[k] == column[k])
+            w->b[row[k]] = w->stage[row[k]];
 }
 
 /* The matrix W - reach A of the unknowns, in factor[]. The number x whose rate is the unknown v has the row
@@ -451,11 +455,11 @@ static void implicit_drift(const gic_model *model, void *self, const Implicit *w
             w->drift[i] += w->jacobian[w->how->columns * i + w->n + k] * (w->change[k] - input[k]);
 }
 
-/* ROS2 or ROS3 for the whole state, with its rate at `from`. */
+/* ROS3, or ROS2 (also for steps of IMEX without history), for the whole state, with its rate at `from`. */
 static int rosenbrock(const gic_model *model, void *self, gic_real time, gic_real step, int32_t method,
                       const gic_real *from, const gic_real *rate, gic_real *next)
 {
-    const Rosenbrock *r = method == GIC_ROS2 ? &ros2 : &ros3;
+    const Rosenbrock *r = method == GIC_ROS3 ? &ros3 : &ros2;
     const Implicit w = implicit_of(model, self);
     const gic_real reach = r->gamma * step;
     int status = implicit_prepare(&w, self, time, method, from, reach);
@@ -494,10 +498,41 @@ static int rosenbrock(const gic_model *model, void *self, gic_real time, gic_rea
     return GIC_OK;
 }
 
+/* What the state changed by in the step before, of IMEX with history: a row that ROS2, which begins, leaves alone. */
+static gic_real *last_change(const Implicit *w)
+{
+    return w->increment + 2 * w->n;
+}
+
+/* IMEX with history: the second-order backward differentiation formula, implicit in A y alone. What the rate f has
+ * beside it goes on in a straight line from the last two steps. With the straight line through the last two states, y0
+ * and y1, it is the solution d of
+ *
+ *     (1 - 2/3 h A) d = -2/3 (y0 - y1) + 2/3 h (2 f0 - f1)
+ *
+ * by which the next state differs from 2 y0 - y1: no product with A is needed, and A may change from step to step.
+ * past: f1. */
+static int imex(const gic_model *model, void *self, gic_real time, gic_real step, const gic_real *from,
+                const gic_real *rate, const gic_real *past, gic_real *next)
+{
+    const Implicit w = implicit_of(model, self);
+    const gic_real part = GIC_R(0.66666666666666663), reach = part * step, *const last = last_change(&w);
+    const int status = implicit_prepare(&w, self, time, GIC_IMEX, from, reach);
+    if (status != GIC_OK)
+        return status;
+    for (int32_t i = 0; i < w.n; ++i)
+        w.b[i] = reach * (rate[i] + (rate[i] - past[i])) - part * last[i];
+    implicit_weigh(&w);
+    implicit_solve(&w, reach, w.increment);
+    for (int32_t i = 0; i < w.n; ++i)
+        next[i] = from[i] + (last[i] + w.increment[i]);
+    return GIC_OK;
+}
+
 /* ---- a step ------------------------------------------------------------------------------------------------ */
 
 /* One step from `from` to `next`; the rate at the start goes to `rate`, and *newest points to it as soon as it is
- * known. `past` has the two rates before the step; NULL: RK4, or an implicit `method`. */
+ * known. `past` has the two rates before the step, of IMEX one; NULL: RK4, or an implicit `method` without history. */
 static int advance(const gic_model *model, void *self, gic_real time, gic_real step, int32_t method,
                    const gic_real *from, const gic_real *past, gic_real *rate, gic_real *next, gic_real *work,
                    const gic_real **newest)
@@ -507,9 +542,11 @@ static int advance(const gic_model *model, void *self, gic_real time, gic_real s
     if (status != GIC_OK)
         return status;
     *newest = rate;
-    if (past)
+    if (past && method == GIC_IMEX)
+        status = imex(model, self, time, step, from, rate, past, next);
+    else if (past)
         adams_bashforth(n, step, from, rate, past, past + n, next);
-    else if (method == GIC_ROS2 || method == GIC_ROS3)
+    else if (method > GIC_RK4)
         status = rosenbrock(model, self, time, step, method, from, rate, next);
     else
         status = runge_kutta(model, self, time, step, from, rate, next, work);
@@ -1369,7 +1406,8 @@ static int plain_step(const gic_model *model, void *self, gic_real step, int32_t
         return head->status = GIC_ERROR_ARGUMENT;
 
     const int32_t n = model->slow_count + model->fast_count;
-    const int32_t known = goes_on(head, step, method, 1) && method == GIC_AB3 ? head->history : 0;
+    const int32_t most = method == GIC_AB3 ? 2 : method == GIC_IMEX ? 1 : 0; /* rates to keep */
+    const int32_t known = goes_on(head, step, method, 1) && most > 0 ? head->history : 0;
     gic_real *history = array_at(self, model->history_offset);
     gic_real *rate = array_at(self, model->scratch_offset), *next = rate + n, *work = next + n;
     gic_real *input_before = rate + GIC_SCRATCH(n, 0);
@@ -1377,19 +1415,21 @@ static int plain_step(const gic_model *model, void *self, gic_real step, int32_t
     copy(input_before, array_at(self, model->input_offset), model->input_count);
     head->hold = head->flip;
     status = head->status = advance(model, self, gic_time(self), step, method, array_at(self, model->state_offset),
-                                    known == 2 ? history : NULL, rate, next, work, &newest);
+                                    known > 0 && known == most ? history : NULL, rate, next, work, &newest);
     if (status != GIC_OK)
         return give_up(model, self, step, status, newest, input_before);
-    status = move_on(model, self, step, method, 1,
-                     method != GIC_AB3 ? 0
-                     : known < 2       ? known + 1
-                                       : 2,
-                     next, rate, known < 2);
+    status = move_on(model, self, step, method, 1, known < most ? known + 1 : most, next, rate, known < 2);
     if (status != GIC_OK)
         return give_up(model, self, step, status, rate, input_before);
     if (head->history > 0) {
         copy(history + n, history, n);
         copy(history, rate, n);
+    }
+    if (head->history > 0 && method == GIC_IMEX) { /* the state at the start is in `next` */
+        const Implicit w = implicit_of(model, self);
+        gic_real *const last = last_change(&w), *const state = array_at(self, model->state_offset);
+        for (int32_t i = 0; i < n; ++i)
+            last[i] = state[i] - next[i];
     }
     return GIC_OK;
 }
@@ -1838,14 +1878,15 @@ int gic_sample(const gic_model *model, void *self, gic_real *next)
     return head->status = status;
 }
 
-/* To `end` by RK4 or an implicit method, in parts about as long as fast steps. */
+/* To `end` by RK4, or ROS2 or ROS3, in parts about as long as fast steps. */
 static int part_to(const gic_model *model, void *self, gic_real end, gic_real fast_step, int32_t method)
 {
     const gic_real length = end - gic_time(self);
     const int32_t parts = 1 + (int32_t)(GIC_R(0.999) * length / fast_step);
+    method = method == GIC_AB3 ? GIC_RK4 : method == GIC_IMEX ? GIC_ROS2 : method; /* steps without history */
     int status = GIC_OK;
     for (int32_t i = 0; i < parts && status == GIC_OK; ++i)
-        status = plain_step(model, self, length / (gic_real)parts, method == GIC_AB3 ? GIC_RK4 : method);
+        status = plain_step(model, self, length / (gic_real)parts, method);
     if (status == GIC_OK) {
         gic_restart(self, end); /* the time as a product, not as a sum */
         set_inputs(model, self, end);

@@ -97,8 +97,8 @@ typedef struct gic_road {
 
 /* ---- the instance ------------------------------------------------------------------------------- */
 
-/* GIC_ROS2 and GIC_ROS3 are implicit, of order 2 and 3: for models with gic_model.implicit alone. */
-typedef enum gic_method { GIC_AB3 = 0, GIC_RK4 = 1, GIC_ROS2 = 2, GIC_ROS3 = 3 } gic_method;
+/* GIC_ROS2, GIC_ROS3 and GIC_IMEX are implicit, of order 2, 3 and 2: for models with gic_model.implicit alone. */
+typedef enum gic_method { GIC_AB3 = 0, GIC_RK4 = 1, GIC_ROS2 = 2, GIC_ROS3 = 3, GIC_IMEX = 4 } gic_method;
 
 /* If set, called before every evaluation: set input[] to the values at `time`. */
 typedef void gic_input_function(void *user, int32_t lane, gic_real time, gic_real *input);
@@ -119,7 +119,7 @@ typedef struct gic_head {
                           * don't need it; other integrators may set it */
     int64_t steps;       /* time = start_time + steps * step, so that no error accumulates */
     int32_t method;      /* of the last step; a change restarts the multistep history */
-    int32_t history;     /* rates kept for AB3: 0, 1 or 2 */
+    int32_t history;     /* rates kept for AB3: 0, 1 or 2; for IMEX 0 or 1 */
     int32_t ratio;       /* of the last step: number of fast steps, 1: single rate; a change restarts the history too */
     int32_t lane;        /* for the caller: the index of this vehicle among many */
     int32_t flip;        /* index of the last good Newton start */
@@ -240,7 +240,8 @@ typedef struct gic_implicit {
     /* Where mass_count > 0, rows of velocities are multiplied by the mass matrix, in the Jacobian and in 1 - reach A,
      * which is W - reach A then, W the unit matrix but for these entries; their values stand behind the Jacobian. */
     int32_t mass_count;
-    const int32_t *mass_row, *mass_column; /* [mass_count] indices in state[]; entries of the diagonal are among them */
+    const int32_t *mass_row, *mass_column; /* [mass_count] indices in state[], row by row; the matrix is symmetric,
+                                                * and its whole diagonal is among its entries */
 } gic_implicit;
 
 #define GIC_IMPLICIT(n, columns) ((n) * ((columns) + (n) + 7) + (columns))
