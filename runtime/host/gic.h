@@ -113,10 +113,11 @@ typedef struct gicl_options {
     const char *recovery; /* "auto", "newton", "closed" */
     const char *compiler; /* of "cc": a command */
     const char *flags;    /* more options for it */
-    const char *integrator; /* instead of the scenes': "ab3", "rk4", "ros2", "ros3", "adams", "rkck", "bdf", "auto" */
-    double tolerance;       /* of variable steps, instead of the scenes' */
-    int general;            /* 1: gicl_run() uses code as for any scene, as gicrun --general does */
-    int lanes;              /* of "cc" in runs and studies: alike parts in vectors of 2, 4, 8 or 16 numbers; 0: none */
+    const char
+        *integrator;  /* instead of the scenes': "ab3", "rk4", "ros2", "ros3", "imex", "adams", "rkck", "bdf", "auto" */
+    double tolerance; /* of variable steps, instead of the scenes' */
+    int general;      /* 1: gicl_run() uses code as for any scene, as gicrun --general does */
+    int lanes;        /* of "cc" in runs and studies: alike parts in vectors of 2, 4, 8 or 16 numbers; 0: none */
 } gicl_options;
 
 /* Words that a member of gicl_options may be, such as "engine", "solve", "recovery", "integrator", from 0, the default

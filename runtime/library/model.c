@@ -82,7 +82,7 @@ static void take_options(OpenModel *model, const gicl_options *given)
     if (model->options.recovery == RECOVERIES)
         option_fail("recovery", o->recovery, "one of auto, newton, closed");
     if (o->integrator && integrator_method(o->integrator) < 0)
-        option_fail("integrator", o->integrator, "one of ab3, rk4, ros2, ros3, adams, rkck, bdf, auto");
+        option_fail("integrator", o->integrator, "one of ab3, rk4, ros2, ros3, imex, adams, rkck, bdf, auto");
     model->integrator = o->integrator ? kept(pool, o->integrator, "") : NULL;
     model->tolerance = o->tolerance;
     if (o->tolerance != 0 && !tolerance_known(o->tolerance))

@@ -44,6 +44,7 @@ static const struct {
 } column[] = {
     {"stable.ab3", GIC_AB3, false},  {"stable.rk4", GIC_RK4, false},    {"accurate.ab3", GIC_AB3, true},
     {"accurate.rk4", GIC_RK4, true}, {"accurate.ros2", GIC_ROS2, true}, {"accurate.ros3", GIC_ROS3, true},
+    {"accurate.imex", GIC_IMEX, true},
 };
 
 const char *mode_steps_column(int k)
@@ -70,7 +71,7 @@ void modes_print_steps(Text *out, const Linear *linear, const Modes *modes, int3
 {
     text_print(out, "\n%-16s  %14s  %14s  %s\n", "constant steps", "stable up to", "1 % up to",
                "stability is limited by");
-    for (int32_t method = GIC_AB3; method <= GIC_ROS3; ++method) {
+    for (int32_t method = GIC_AB3; method <= GIC_IMEX; ++method) {
         const int32_t parts = method == GIC_AB3 ? ratio : 1;
         const StepLimit limit = modes_step(linear, modes, method, parts);
         Text name = {.pool = out->pool};
@@ -90,5 +91,5 @@ void modes_print_steps(Text *out, const Linear *linear, const Modes *modes, int3
     }
     text_print(out, "\nstable: no motion grows that dies out by itself; 1 %%: each eigenvalue as the steps have it is "
                     "right to 1 %% of "
-                    "its size.\nros2, ros3: implicit steps, which damp what they do not resolve: models/STIFF.md\n");
+                    "its size.\nros2, ros3, imex: implicit steps, which damp what they do not resolve: models/STIFF.md\n");
 }

@@ -56,9 +56,11 @@ double step_growth(int32_t method, double real, double imaginary)
 /* ---- longest steps ---------------------------------------------------------------------------------------------- */
 
 /* The stability function of order 3 with a pole of order 4 at 1 / gamma and a zero at infinity is one alone; that of
- * order 2 with a pole of order 2 too. */
-static double complex rosenbrock_factor(int32_t method, double complex z)
+ * order 2 with a pole of order 2 too. Of the second-order backward formula, the root that is exp(z) for small z. */
+static double complex implicit_factor(int32_t method, double complex z)
 {
+    if (method == GIC_IMEX)
+        return (2 + csqrt(1 + 2 * z)) / (3 - 2 * z);
     if (method == GIC_ROS2) {
         const double g = 1 - sqrt(0.5);
         return (1 + (1 - 2 * g) * z) / cpow(1 - g * z, 2);
@@ -88,7 +90,7 @@ double step_error(int32_t method, double real, double imaginary)
     const double complex z = real + imaginary * I;
     const double complex factor = method == GIC_AB3   ? ab3_factor(z)
                                   : method == GIC_RK4 ? 1 + z * (1 + z / 2 * (1 + z / 3 * (1 + z / 4)))
-                                                      : rosenbrock_factor(method, z);
+                                                      : implicit_factor(method, z);
     return cabs(clog(factor * cexp(-z))) / cabs(z);
 }
 

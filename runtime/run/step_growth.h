@@ -12,7 +12,7 @@
 double step_growth(int32_t method, double real, double imaginary);
 /* True if the factor is larger than `growth`; without a search for its value. */
 bool step_grows(int32_t method, double real, double imaginary, double growth);
-/* Relative error of the eigenvalue that a motion has in steps of a method, GIC_ROS2 and GIC_ROS3 with an exact Jacobian
+/* Relative error of the eigenvalue that a motion has in steps of a method, implicit ones with an exact Jacobian
  * among them: |log r - z| / |z|, with the factor r of the root that is exp(z) in the limit of short steps. */
 double step_error(int32_t method, double real, double imaginary);
 /* The longest step, s, with which a motion of eigenvalue lambda, 1/s, does not grow; and with which step_error() is at

@@ -85,8 +85,9 @@ enum { AUTOMATIC = 1000 }; /* what `auto` is until the scene is read */
 static const struct {
     const char *name;
     int32_t method;
-} integrators[] = {{"ab3", GIC_AB3},        {"rk4", GIC_RK4},      {"ros2", GIC_ROS2},  {"ros3", GIC_ROS3},
-                   {"adams", METHOD_ADAMS}, {"rkck", METHOD_RKCK}, {"bdf", METHOD_BDF}, {"auto", AUTOMATIC}};
+} integrators[] = {{"ab3", GIC_AB3},      {"rk4", GIC_RK4},    {"ros2", GIC_ROS2},
+                   {"ros3", GIC_ROS3},    {"imex", GIC_IMEX},  {"adams", METHOD_ADAMS},
+                   {"rkck", METHOD_RKCK}, {"bdf", METHOD_BDF}, {"auto", AUTOMATIC}};
 
 enum { INTEGRATORS = sizeof integrators / sizeof *integrators };
 
@@ -113,7 +114,7 @@ const char *integrator_name(int32_t method)
 
 bool scene_implicit(const Scene *scene)
 {
-    return scene->method == GIC_ROS2 || scene->method == GIC_ROS3;
+    return scene->method >= GIC_ROS2 && scene->method <= GIC_IMEX;
 }
 
 void scene_no_implicit(const Scene *scene, const char *what)
@@ -139,8 +140,8 @@ static void read_integrator(Reader *reader, const Item *root, const char *integr
     const Item *method = doc_find(root, "integrator"), *limit = doc_find(root, "tolerance");
     const char *word = method ? doc_word(method, "integrator") : "ab3";
     if (integrator_method(word) < 0)
-        diag_fail(method->at, "write ab3, rk4, ros2, ros3, adams, rkck, bdf or auto", "there is no integrator '%s'",
-                  word);
+        diag_fail(method->at, "write ab3, rk4, ros2, ros3, imex, adams, rkck, bdf or auto",
+                  "there is no integrator '%s'", word);
     scene->method = integrator_method(integrator ? integrator : word);
     scene->automatic = scene->method == AUTOMATIC;
     scene->method = scene->automatic ? GIC_AB3 : scene->method;
@@ -192,7 +193,7 @@ static void read_keep(Reader *reader, const Item *item, bool replaced)
         diag_fail(item->at, "write how many steps are made with one Jacobian, for example 4",
                   "keep_jacobian must be a whole number from 1 to %g", most);
     if (!scene_implicit(reader->scene) && !replaced)
-        diag_fail(item->at, "remove it, or write `integrator: ros2` or `ros3`",
+        diag_fail(item->at, "remove it, or write `integrator: ros2`, `ros3` or `imex`",
                   reader->scene->method == METHOD_BDF ? "%s decides itself how long it keeps a Jacobian"
                                                       : "%s needs no Jacobian",
                   integrator_name(reader->scene->method));

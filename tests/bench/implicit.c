@@ -11,7 +11,7 @@
 #define JOIN(a, b) JOIN_OF(a, b)
 #include TEXT(MODEL.h)
 
-enum { ROUNDS = 5, WAYS = 6, STATES = sizeof((MODEL *)0)->state / sizeof(gic_real) };
+enum { ROUNDS = 5, WAYS = 11, STATES = sizeof((MODEL *)0)->state / sizeof(gic_real) };
 
 static const double duration = 1;
 static const struct {
@@ -21,7 +21,10 @@ static const struct {
     int keep;
 } way[WAYS] = {
     {"ab3", GIC_AB3, 0.00025, 0}, {"ros2", GIC_ROS2, 0.001, 1}, {"ros2, one Jacobian in 4", GIC_ROS2, 0.001, 4},
-    {"ros3", GIC_ROS3, 0.001, 1}, {"ros2", GIC_ROS2, 0.002, 1}, {"ros3", GIC_ROS3, 0.005, 1}};
+    {"ros2, one Jacobian in 16", GIC_ROS2, 0.001, 16},
+    {"ros3", GIC_ROS3, 0.001, 1}, {"ros2", GIC_ROS2, 0.002, 1}, {"ros3", GIC_ROS3, 0.005, 1},
+    {"rk4", GIC_RK4, 0.001, 0}, {"imex, one Jacobian in 4", GIC_IMEX, 0.001, 4},
+    {"imex, one Jacobian in 16", GIC_IMEX, 0.001, 16}, {"imex, one Jacobian in 16", GIC_IMEX, 0.002, 16}};
 
 static MODEL car;
 

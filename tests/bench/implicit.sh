@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# implicit.sh GICGEN [FLAG...]: steps of the hatchback on its bushings, ab3 against ros2 and ros3 by turns in one run, with the
+# implicit.sh GICGEN [FLAG...]: steps of the hatchback on its bushings, ab3 and rk4 against ros2, ros3 and imex by turns in one run, with the
 # error of the place after a second in a crosswind, from where the model is drawn, against rk4 at 31 us (implicit.c); the code is
 # compiled with `-O2 -march=native` or the FLAGs, which takes minutes.
 gicgen=$1

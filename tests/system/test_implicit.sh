@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# test_implicit.sh GICGEN GICRUN: implicit steps (ros2, ros3) of models. A body on a stiff bushing against its closed form
+# test_implicit.sh GICGEN GICRUN: implicit steps (ros2, ros3, imex) of models. A body on a stiff bushing against its closed form
 # and its static displacement; van der Pol's oscillator and Prothero and Robinson's problem as models; orders of whole
 # vehicles, with Jacobians that are kept; contacts, gears, controllers; a parked vehicle that must not creep; energy over
 # a long run; bits of all compilers; embedded code in both number types; what is refused. The methods themselves are in
@@ -77,6 +77,35 @@ for method in 2 3; do
         d = ($2 * $2 * 1e6 + $3 * $3) / right - 1; print (d < 0 ? -d : d) }')
     check "energy on a bushing without damping, ros$method: ${off:-no run}" within "${off:-1}" 1e-9
 done
+
+# ---- imex: the same body, its static displacement, and without damping the recurrence of the backward formula
+scene 0.02 @ 'integrator: imex' 'initial: {coordinates: {x: 0.001}}' 'outputs: [x.value]' >mount.scene
+order 'a body on a bushing, imex' mount.veh mount.csv 200 1.9 2.2 mount.scene 2>err
+scene 20 0.025 'integrator: imex' 'keep_jacobian: 50' 'inputs: {push: 3000}' 'outputs: [x]' >static.scene
+run -q mount.veh static.scene -o static.csv
+x=$(tail -n 1 static.csv | cut -d, -f2)
+check "the static displacement by imex: $x" within "$(awk "BEGIN { d = $x / 0.0015 - 1; print d < 0 ? -d : d }")" 1e-12
+scene 0.1 0.0002 'integrator: imex' 'keep_jacobian: 9' 'initial: {coordinates: {x: 0.001}}' 'outputs: [x]' >swing.scene
+run -q swing.veh swing.scene -o swing.csv
+# of c = x - i v / w; the first step is one of ros2: (1 + (1 - 2 g) z) / (1 - g z)^2, z = 0.2 i
+off=$(tail -n 1 swing.csv | awk -F, '{ y = 0.2; g = 1 - sqrt(0.5)
+    p = 1 - g * g * y * y; q = -2 * g * y; s = (1 - 2 * g) * y
+    a = 1; b = 0; c = (p + s * q) / (p * p + q * q); d = (s * p - q) / (p * p + q * q)
+    for (k = 1; k < 500; ++k) { u = 4 * c - a; v = 4 * d - b; a = c; b = d
+        c = (3 * u - 2 * y * v) / (9 + 4 * y * y); d = (3 * v + 2 * y * u) / (9 + 4 * y * y) }
+    e = ($2 * $2 * 1e6 + $3 * $3) / (c * c + d * d) - 1; print (e < 0 ? -e : e) }')
+check "energy on a bushing without damping, imex: ${off:-no run}" within "${off:-1}" 1e-9
+# A force that gets 17 times as stiff as when its Jacobian was made: the step does not bear that, and says so. With
+# Jacobians of their own steps do.
+sed 's/rubber: .*/rubber: {type: force, coordinate: x, value: "-2e6 * x - 2e14 * x * x * x - 400 * rate(x)"}/' mount.veh >harder.veh
+scene 2 0.001 'integrator: imex' 'keep_jacobian: 1000' 'inputs: {push: {sine: {amplitude: 3000, frequency: 0.1, start: -10}}}' 'outputs: [x]' >harder.scene
+run -q harder.veh harder.scene -o harder.csv
+{ [ "$status" -ne 0 ] && says 'error: ' && says 'x'; }
+verdict $? "a Jacobian that is too old: $(head -n 1 err)"
+sed 's/^keep.*/keep_jacobian: 2/' harder.scene >fresh.scene
+run -q harder.veh fresh.scene -o harder.csv
+off=$(tail -n 1 harder.csv | awk -F, '{ p = 3000 * sin(0.4 * 3.14159265358979312); d = (2e6 * $2 + 2e14 * $2 ^ 3) / p - 1; print (d < 0 ? -d : d) }')
+check "a force that gets stiffer, imex: ${off:-no run}" within "${off:-1}" 1e-4
 
 # ---- light upper arms with their masses, 5 ms: nearer to variable steps than AB3 with the same
 sed 's/^output_step: .*/output_step: 0.1/' "$models/scenes/hmmwv14.scene" >light.scene
@@ -187,6 +216,14 @@ for method in 2 3; do
     [ -e complete.csv ] || reference "$models/hmmwv_vehicle.veh" complete.scene complete.csv
     order "tires and powertrain, ros$method" "$models/hmmwv_vehicle.veh" complete.csv 32 $((method - 1)).85 $method.3 complete.scene
 done
+for keep in 1 7; do
+    scene 0.4 @ 'integrator: imex' "keep_jacobian: $keep" >imex.scene
+    cat waves >>imex.scene
+    order "a vehicle, imex, kept $keep steps" "$models/hmmwv.veh" car.csv 32 1.85 2.3 imex.scene
+done
+scene 0.4 @ 'integrator: imex' >imex.scene
+cat steering >>imex.scene
+order 'tires and powertrain, imex' "$models/hmmwv_vehicle.veh" complete.csv 32 1.85 2.3 imex.scene
 # as RK4 in the limit
 for how in 'rk4 0.0001' 'ros3 0.0001'; do
     sed "s/@/${how#* }/; s/^integrator.*/integrator: ${how% *}/" car.scene | sed '/^keep/d' >limit.scene
@@ -204,19 +241,30 @@ run "$models/hmmwv_tires.veh" jump.scene -o own.csv
 check 'contacts located by implicit steps' says 'contacts located'
 off=$(apart own.csv jump.csv)
 check "a jump: $off" within "$off" 5e-3
+run --integrator imex "$models/hmmwv_tires.veh" jump.scene -o own.csv
+check 'contacts located by imex' says 'contacts located'
+off=$(apart own.csv jump.csv)
+check "a jump, imex: $off" within "$off" 2e-2
 # sampled controllers: parts of steps
 "$gicrun" -q "$models/controllers/skyhook.veh" "$models/controllers/skyhook.scene" -o rk4.csv --integrator rk4 2>err
 "$gicrun" -q "$models/controllers/skyhook.veh" "$models/controllers/skyhook.scene" -o ros3.csv --integrator ros3 2>err
 off=$(apart rk4.csv ros3.csv)
 check "controllers: ros3 against rk4: $off" within "$off" 2e-3
+for step in 0.001 0.0005; do
+    sed "s/^step: .*/step: $step/" "$models/controllers/skyhook.scene" >samples.scene
+    "$gicrun" -q "$models/controllers/skyhook.veh" samples.scene -o imex.csv --integrator imex 2>err
+    apart rk4.csv imex.csv >off$step
+done
+by=$(awk -v a="$(cat off0.001)" -v b="$(cat off0.0005)" 'BEGIN { print (b > 0 ? a / b : 0) }')
+check "controllers: imex against rk4: $(cat off0.001), with half the step $(cat off0.0005)" within 3.5 "$by"
 
 # ---- parked on a slope at 10 ms, without creep
-for method in 2 3; do
-    scene 20 0.01 "integrator: ros$method" 'outputs: [chassis]' >park.scene
+for method in ros2 ros3 imex; do
+    scene 20 0.01 "integrator: $method" 'outputs: [chassis]' >park.scene
     rest_of "$models/scenes/tires_park.scene" >>park.scene
     run -q "$models/hmmwv_tires.veh" park.scene -o park.csv
     creep=$(awk -F, 'NR > 6 { if (NR == 7 || $2 < low) low = $2; if (NR == 7 || $2 > high) high = $2 } END { print high - low }' park.csv)
-    check "parked for 10 s, ros$method: ${creep:-no run} m" within "${creep:-1}" 1e-7
+    check "parked for 10 s, $method: ${creep:-no run} m" within "${creep:-1}" 1e-7
 done
 
 # ---- a pendulum keeps its energy but for the error of the method, over 1000 s
@@ -253,6 +301,8 @@ refused() {
 }
 scene 1 0.01 'integrator: ros3' 'ratio: 4' >bad.scene
 refused 'ros3 has one rate for everything' 'integrator: ab3' "$models/hmmwv_tires.veh" bad.scene -o none.csv
+scene 1 0.01 'integrator: imex' 'ratio: 4' >bad.scene
+refused 'imex has one rate for everything' 'integrator: ab3' "$models/hmmwv_tires.veh" bad.scene -o none.csv
 scene 1 0.01 'integrator: ros2' 'most_work: 100' >bad.scene
 refused 'implicit steps (ros2) do not bound the work' 'leave it out' "$models/hmmwv_tires.veh" bad.scene -o none.csv
 scene 1 0.01 'integrator: ab3' 'keep_jacobian: 4' >bad.scene
@@ -302,9 +352,9 @@ static hmmwv_vehicle car, copy;
 /* a second of braking, with a copy on the way */
 int main(void)
 {
-    static const gic_method methods[2] = {GIC_ROS2, GIC_ROS3};
+    static const gic_method methods[3] = {GIC_ROS2, GIC_ROS3, GIC_IMEX};
     int i, k;
-    for (i = 0; i < 2; ++i) {
+    for (i = 0; i < 3; ++i) {
         const gic_method method = methods[i];
         if (hmmwv_vehicle_setup(&car) != GIC_OK)
             return 1;

@@ -88,6 +88,7 @@ END
 oscillator 1 10000 0
 run --modes oscillator.veh
 check "a row of AB3" prints '^ab3  *0.007236 s  *0.00[0-9.]* s  0 +- 100i: x 100 %$'
+check "a row of imex" prints '^imex  *any  *0.001[67][0-9]* s *$'
 check "a row of ros3" prints '^ros3  *any  *0.0[0-9.]* s *$'
 
 # ---- auto: |lambda| is 1000 1/s, so AB3 is stable to 0.64 ms; which it takes, and that the run is that of its name

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
- * Implicit steps (ROS2, ROS3) on functions: conditions of order for any matrix A by arithmetic in long double, orders
+ * Implicit steps (ROS2, ROS3, IMEX) on functions: conditions of order for any matrix A by arithmetic in long double, orders
  * with exact, kept and wrong Jacobians, the stability function, stiff problems, what fails and what is kept. */
 #include <setjmp.h>
 #include <stdarg.h>
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -262,8 +263,9 @@ static double pol_error(const Problem *problem, int method, int steps, int keep,
     probe.head.input_function = waves;
     for (int k = 0; k < steps; ++k)
         assert_int_equal(gic_step(&model, &probe, pol_end / steps, method), GIC_OK);
-    const int most = keep > 1 ? keep : 1;
-    assert_int_equal(probe.implicit.jacobian_count, (steps + most - 1) / most);
+    /* IMEX begins with a step of ROS2, whose matrix is another */
+    const int most = keep > 1 ? keep : 1, begun = method == GIC_IMEX;
+    assert_int_equal(probe.implicit.jacobian_count, begun + (steps - begun + most - 1) / most);
     return fabs(probe.state[0] - (double)exact[0]) + fabs(probe.state[1] - (double)exact[1]);
 }
 
@@ -275,13 +277,14 @@ static void test_orders(void **unused)
     const int keeps[] = {0, 7};
     long double exact[2];
     pol_reference(exact);
-    for (int method = GIC_ROS2; method <= GIC_ROS3; ++method)
+    for (int method = GIC_ROS2; method <= GIC_IMEX; ++method)
         for (int w = 0; w < 3; ++w)
             for (int k = 0; k < 2; ++k) {
-                const double coarse = pol_error(&ways[w], method, 400, keeps[k], exact);
-                const double fine = pol_error(&ways[w], method, 800, keeps[k], exact);
+                const int steps = method == GIC_IMEX ? 3200 : 400;
+                const double coarse = pol_error(&ways[w], method, steps, keeps[k], exact);
+                const double fine = pol_error(&ways[w], method, 2 * steps, keeps[k], exact);
                 const double order = log2(coarse / fine);
-                if (!(fabs(order - method) < 0.15)) /* GIC_ROS2 is 2, GIC_ROS3 is 3 */
+                if (!(fabs(order - (method == GIC_ROS3 ? 3 : 2)) < 0.15))
                     fail_msg("method %d, way %d, kept %d steps: %g and %g, order %g", method, w, keeps[k], coarse, fine,
                              order);
             }
@@ -395,10 +398,92 @@ static void test_prothero_robinson(void **unused)
         assert_true(fabs(log2(robinson_error(method, 50, 0) / robinson_error(method, 100, 0)) - method) < 0.15);
         for (stiff = -1e3; stiff > -1e10; stiff *= 10) { /* order 2 at least where steps are long */
             const double coarse = robinson_error(method, 20, 1), fine = robinson_error(method, 40, 1);
-            if (1)
-                print_message("method %d, lambda %g: %g and %g", method, stiff, coarse, fine);
+            if (!(coarse < 0.1 / -stiff && fine < 0.05 / -stiff))
+                fail_msg("method %d, lambda %g: %g and %g", method, stiff, coarse, fine);
         }
     }
+    /* IMEX takes what the inputs do as a straight line: off by h^2 times their second derivative, whatever lambda is */
+    stiff = -1;
+    assert_true(fabs(log2(robinson_error(GIC_IMEX, 50, 0) / robinson_error(GIC_IMEX, 100, 0)) - 2) < 0.15);
+    for (stiff = -1e3; stiff > -1e10; stiff *= 10)
+        for (int keep = 1; keep < 30; keep += 9) {
+            const double coarse = robinson_error(GIC_IMEX, 50, keep), fine = robinson_error(GIC_IMEX, 100, keep);
+            if (!(coarse < 1.02 * 0.04 * 0.04 && fine < 1.02 * 0.02 * 0.02))
+                fail_msg("IMEX, lambda %g, kept %d steps: %g and %g", stiff, keep, coarse, fine);
+        }
+}
+
+/* ---- IMEX ----------------------------------------------------------------------------------------------------- */
+
+/* With the exact Jacobian it is the backward formula, y[n + 1] (3 - 2 z) = 4 y[n] - y[n - 1], stable in the left half
+ * plane. */
+static void test_backward_formula(void **unused)
+{
+    (void)unused;
+    const gic_model model = model_of(&spiral);
+    for (int size = -8; size <= 36; ++size)
+        for (int way = 0; way <= 4; ++way) {
+            const double angle = acos(-1.0) * (1 - way / 8.0), length = pow(10, size / 4.0);
+            lambda = length * (way == 4 ? I : cexp(I * angle));
+            const double complex z = lambda * 0.5;
+            double complex before = 1, now = growth_of(&ros2, z);
+            Probe probe = probe_new(&spiral, (const double[]){1, 0}, way);
+            assert_int_equal(gic_step(&model, &probe, 0.5, GIC_IMEX), GIC_OK);
+            for (int k = 0; k < 60; ++k) {
+                const double complex next = (4 * now - before) / (3 - 2 * z);
+                before = now;
+                now = next;
+                assert_int_equal(gic_step(&model, &probe, 0.5, GIC_IMEX), GIC_OK);
+                const double complex is = probe.state[0] + probe.state[1] * I;
+                if (!(cabs(is - now) < 1e-10 && cabs(is) < 1.5))
+                    fail_msg("lambda %g + %g i, step %d: %g + %g i, not %g + %g i", creal(lambda), cimag(lambda), k,
+                             creal(is), cimag(is), creal(now), cimag(now));
+            }
+            assert_true(size < 20 || cabs(now) < 1e-9); /* L-stable */
+            if (size >= -6 && size <= -1) /* the other root is near 1/3 */
+                assert_true(fabs(step_error(GIC_IMEX, creal(z), cimag(z)) - cabs(clog(now / before * cexp(-z)) / z)) <
+                            1e-9 / cabs(z));
+        }
+}
+
+/* A Jacobian that has a share of what there is. */
+static double part_of_it;
+
+static void part_slopes(double time, const double *y, const double *u, double (*by)[COLUMNS])
+{
+    (void)time, (void)y, (void)u;
+    by[0][0] = by[1][1] = part_of_it * creal(lambda);
+    by[0][1] = -part_of_it * cimag(lambda);
+    by[1][0] = part_of_it * cimag(lambda);
+}
+
+/* Of a stiff motion the matrix must have three quarters: then, as z goes to infinity, s r^2 + (1 - s) (2 r - 1) = 0 of
+ * a share s has roots within the unit circle, and r = -1 where s is 3/4. */
+static void test_rest(void **unused)
+{
+    (void)unused;
+    const Problem problem = {2, spiral_rates, part_slopes, 0};
+    const gic_model model = model_of(&problem);
+    const struct {
+        double share;
+        bool stable;
+    } row[] = {{0.5, false}, {0.74, false}, {0.76, true}, {1, true}, {2, true}, {10, true}};
+    for (size_t i = 0; i < sizeof row / sizeof *row; ++i)
+        for (int way = 0; way <= 2; ++way) {
+            lambda = -1e8 * cexp(I * acos(-1.0) * way / 6.0);
+            part_of_it = row[i].share;
+            Probe probe = probe_new(&problem, (const double[]){1, 0}, 1000);
+            double begun = 0, most = 0;
+            int status = GIC_OK;
+            for (int k = 0; k < 400 && status == GIC_OK; ++k) {
+                status = gic_step(&model, &probe, 1, GIC_IMEX);
+                most = hypot(probe.state[0], probe.state[1]);
+                begun = k == 10 ? most : begun;
+            }
+            assert_int_equal(status, row[i].share > 0.6 ? GIC_OK : GIC_ERROR_UNSTABLE);
+            if (!(row[i].stable ? most < 1e-3 * begun : most > 1e3 * begun))
+                fail_msg("share %g, way %d: %g, then %g", row[i].share, way, begun, most);
+        }
 }
 
 /* ---- what is no unknown --------------------------------------------------------------------------------------- */
@@ -440,7 +525,7 @@ static void test_positions(void **unused)
                                0,
                                NULL,
                                NULL};
-    for (int method = GIC_ROS2; method <= GIC_ROS3; ++method) {
+    for (int method = GIC_ROS2; method <= GIC_IMEX; ++method) {
         const gic_model model = model_of(&problem);
         gic_model other = model;
         other.implicit = &half;
@@ -486,7 +571,7 @@ static void test_own_factors(void **unused)
     own.factorize = cramer_factorize;
     own.solve = cramer_solve;
     other.implicit = &own;
-    for (int method = GIC_ROS2; method <= GIC_ROS3; ++method)
+    for (int method = GIC_ROS2; method <= GIC_IMEX; ++method)
         for (cramer_works = 0; cramer_works < 2; ++cramer_works) {
             Probe a = probe_new(&problem, pol_start, 3), b = a;
             for (int k = 0; k < 30; ++k) {
@@ -512,11 +597,11 @@ static void test_pivot(void **unused)
 {
     (void)unused;
     const gic_model model = model_of(&spiral);
-    for (int method = GIC_ROS2; method <= GIC_ROS3; ++method) {
+    for (int method = GIC_ROS2; method <= GIC_IMEX; ++method) {
         Probe probe = probe_new(&spiral, (const double[]){1, 0}, 5);
         lambda = -1;
         assert_int_equal(gic_step(&model, &probe, 0.25, method), GIC_OK);
-        lambda = 8 / (method == GIC_ROS2 ? ros2.gamma : ros3.gamma); /* 1 - gamma h lambda is 0 */
+        lambda = 8 / (method == GIC_ROS3 ? ros3.gamma : ros2.gamma); /* 1 - gamma h lambda is 0 */
         Probe before = probe;
         assert_int_equal(gic_step(&model, &probe, 0.125, method), GIC_ERROR_PIVOT);
         assert_int_equal(probe.head.grown, 0);
@@ -540,7 +625,7 @@ static void test_failures(void **unused)
     const gic_model model = model_of(&problem);
     gic_model none_of_it = model;
     none_of_it.implicit = NULL;
-    for (int method = GIC_ROS2; method <= GIC_ROS3; ++method) {
+    for (int method = GIC_ROS2; method <= GIC_IMEX; ++method) {
         Probe probe = probe_new(&problem, (const double[]){1e8}, 1), before = probe;
         assert_int_equal(gic_step(&model, &probe, 1, method), GIC_ERROR_UNSTABLE);
         assert_int_equal(probe.head.grown, 0);
@@ -554,7 +639,7 @@ static void test_failures(void **unused)
         assert_int_equal(gic_step(&model, &probe, 0.01, GIC_RK4), GIC_OK);
     }
     Probe probe = probe_new(&problem, (const double[]){1}, 1);
-    assert_int_equal(gic_step(&model, &probe, 0.01, GIC_ROS3 + 1), GIC_ERROR_ARGUMENT);
+    assert_int_equal(gic_step(&model, &probe, 0.01, GIC_IMEX + 1), GIC_ERROR_ARGUMENT);
     assert_int_equal(gic_step(&model, &probe, -0.01, GIC_ROS3), GIC_ERROR_ARGUMENT);
     assert_int_equal(gic_step(&model, &probe, (double)NAN, GIC_ROS2), GIC_ERROR_ARGUMENT);
 }
@@ -565,7 +650,7 @@ static void test_copies(void **unused)
     (void)unused;
     const Problem problem = {2, pol_rates, pol_slopes, 0};
     const gic_model model = model_of(&problem);
-    for (int method = GIC_ROS2; method <= GIC_ROS3; ++method) {
+    for (int method = GIC_ROS2; method <= GIC_IMEX; ++method) {
         Probe probe = probe_new(&problem, pol_start, 5), copy = probe;
         for (int k = 0; k < 40; ++k) {
             if (k == 13)
@@ -606,6 +691,7 @@ int main(void)
         cmocka_unit_test(test_positions),  cmocka_unit_test(test_own_factors),
         cmocka_unit_test(test_pivot),      cmocka_unit_test(test_failures),
         cmocka_unit_test(test_copies),     cmocka_unit_test(test_keeping),
+        cmocka_unit_test(test_rest),       cmocka_unit_test(test_backward_formula),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
