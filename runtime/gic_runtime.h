@@ -241,7 +241,7 @@ typedef struct gic_implicit {
      * which is W - reach A then, W the unit matrix but for these entries; their values stand behind the Jacobian. */
     int32_t mass_count;
     const int32_t *mass_row, *mass_column; /* [mass_count] indices in state[], row by row; the matrix is symmetric,
-                                                * and its whole diagonal is among its entries */
+                                            * and its whole diagonal is among its entries */
 } gic_implicit;
 
 #define GIC_IMPLICIT(n, columns) ((n) * ((columns) + (n) + 7) + (columns))

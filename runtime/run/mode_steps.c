@@ -42,8 +42,8 @@ static const struct {
     int32_t method;
     bool accurate;
 } column[] = {
-    {"stable.ab3", GIC_AB3, false},  {"stable.rk4", GIC_RK4, false},    {"accurate.ab3", GIC_AB3, true},
-    {"accurate.rk4", GIC_RK4, true}, {"accurate.ros2", GIC_ROS2, true}, {"accurate.ros3", GIC_ROS3, true},
+    {"stable.ab3", GIC_AB3, false},    {"stable.rk4", GIC_RK4, false},    {"accurate.ab3", GIC_AB3, true},
+    {"accurate.rk4", GIC_RK4, true},   {"accurate.ros2", GIC_ROS2, true}, {"accurate.ros3", GIC_ROS3, true},
     {"accurate.imex", GIC_IMEX, true},
 };
 
@@ -89,7 +89,8 @@ void modes_print_steps(Text *out, const Linear *linear, const Modes *modes, int3
         else
             text_print(out, "\n");
     }
-    text_print(out, "\nstable: no motion grows that dies out by itself; 1 %%: each eigenvalue as the steps have it is "
-                    "right to 1 %% of "
-                    "its size.\nros2, ros3, imex: implicit steps, which damp what they do not resolve: models/STIFF.md\n");
+    text_print(out,
+               "\nstable: no motion grows that dies out by itself; 1 %%: each eigenvalue as the steps have it is "
+               "right to 1 %% of "
+               "its size.\nros2, ros3, imex: implicit steps, which damp what they do not resolve: models/STIFF.md\n");
 }

@@ -19,12 +19,17 @@ static const struct {
     gic_method method;
     double step;
     int keep;
-} way[WAYS] = {
-    {"ab3", GIC_AB3, 0.00025, 0}, {"ros2", GIC_ROS2, 0.001, 1}, {"ros2, one Jacobian in 4", GIC_ROS2, 0.001, 4},
-    {"ros2, one Jacobian in 16", GIC_ROS2, 0.001, 16},
-    {"ros3", GIC_ROS3, 0.001, 1}, {"ros2", GIC_ROS2, 0.002, 1}, {"ros3", GIC_ROS3, 0.005, 1},
-    {"rk4", GIC_RK4, 0.001, 0}, {"imex, one Jacobian in 4", GIC_IMEX, 0.001, 4},
-    {"imex, one Jacobian in 16", GIC_IMEX, 0.001, 16}, {"imex, one Jacobian in 16", GIC_IMEX, 0.002, 16}};
+} way[WAYS] = {{"ab3", GIC_AB3, 0.00025, 0},
+               {"ros2", GIC_ROS2, 0.001, 1},
+               {"ros2, one Jacobian in 4", GIC_ROS2, 0.001, 4},
+               {"ros2, one Jacobian in 16", GIC_ROS2, 0.001, 16},
+               {"ros3", GIC_ROS3, 0.001, 1},
+               {"ros2", GIC_ROS2, 0.002, 1},
+               {"ros3", GIC_ROS3, 0.005, 1},
+               {"rk4", GIC_RK4, 0.001, 0},
+               {"imex, one Jacobian in 4", GIC_IMEX, 0.001, 4},
+               {"imex, one Jacobian in 16", GIC_IMEX, 0.001, 16},
+               {"imex, one Jacobian in 16", GIC_IMEX, 0.002, 16}};
 
 static MODEL car;
 

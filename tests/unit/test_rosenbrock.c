@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Implicit steps (ROS2, ROS3, IMEX) on functions: conditions of order for any matrix A by arithmetic in long double, orders
- * with exact, kept and wrong Jacobians, the stability function, stiff problems, what fails and what is kept. */
+ * Implicit steps (ROS2, ROS3, IMEX) on functions: conditions of order for any matrix A by arithmetic in long double,
+ * orders with exact, kept and wrong Jacobians, the stability function, stiff problems, what fails and what is kept. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdbool.h>
@@ -440,7 +440,7 @@ static void test_backward_formula(void **unused)
                              creal(is), cimag(is), creal(now), cimag(now));
             }
             assert_true(size < 20 || cabs(now) < 1e-9); /* L-stable */
-            if (size >= -6 && size <= -1) /* the other root is near 1/3 */
+            if (size >= -6 && size <= -1)               /* the other root is near 1/3 */
                 assert_true(fabs(step_error(GIC_IMEX, creal(z), cimag(z)) - cabs(clog(now / before * cexp(-z)) / z)) <
                             1e-9 / cabs(z));
         }
