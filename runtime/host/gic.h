@@ -108,7 +108,7 @@ typedef struct gicl_options {
     const char *engine;   /* "tcc" (default): generated code, compiled in this process; "cc": by the C compiler, kept in
                            * gicrun's cache; "tape": interpreted; "auto": "tcc", which goes over to "cc" in long runs.
                            * All give the same bits, runs of scenes with `general`. "gic", "gcp1", "gcp2": of runs and
-                           * studies alone */
+                           * studies alone; "page": of runs in gicl_write(), the digits of a page of --drive */
     const char *solve;    /* "auto", "reduced", "articulated", "augmented" */
     const char *recovery; /* "auto", "newton", "closed" */
     const char *compiler; /* of "cc": a command */

@@ -66,7 +66,7 @@ static void take_options(OpenModel *model, const gicl_options *given)
     const gicl_options *o = given ? given : &none;
     model->engine_name = kept(pool, o->engine, engines[0]);
     if (!engine_known(model->engine_name))
-        option_fail("engine", model->engine_name, "one of tcc, cc, tape, auto, gic, gcp1, gcp2");
+        option_fail("engine", model->engine_name, "one of tcc, cc, tape, auto, gic, gcp1, gcp2, page");
     if (o->lanes && strcmp(model->engine_name, "cc") != 0)
         option_fail("lanes", pool_print(pool, "%d", o->lanes), "0, or the engine cc");
     if (o->lanes && !lanes_of(pool_print(pool, "%d", o->lanes)))

@@ -16,6 +16,7 @@
 #include "run/linear_model.h"
 #include "run/linearize.h"
 #include "run/manoeuvre.h"
+#include "run/page_vehicle.h"
 #include "run/run.h"
 #include "run/sheet.h"
 #include "run/trim.h"
@@ -236,6 +237,39 @@ static void report_rest(const Writing *w, const Model *model, const Scene *scene
         modes_report(w->pool, scene, request, found);
 }
 
+static bool has_engine_page(const Writing *w)
+{
+    return !strcmp(w->open->engine_name, "page");
+}
+
+/* Is the run to have the page's digits: asked for, or a page's recording, unless another engine is asked for? */
+static bool wants_page(const Writing *w)
+{
+    const bool asked = has_engine_page(w), automatic = !strcmp(w->open->engine_name, "auto");
+    return w->kind == RUN && (asked || (automatic && w->study->replay && replay_is_of_page(w->pool, w->study->replay)));
+}
+
+/* A scene, perhaps one of a recording, that the vehicle of a page of `whole` computes, where one can be made and the
+ * recording is one of it. Conditions and sleep are left out, as on the page. */
+static const Scene *on_page(const Writing *w, const Model *model, const Scene *whole, const Scene *scene,
+                            const Request *request)
+{
+    const char *why, *remedy;
+    PageVehicle *page = page_vehicle_new(w->pool, model, whole, request, &why, &remedy);
+    if (!page && has_engine_page(w))
+        diag_fail(program_place(), remedy, "%s", why);
+    if (!page)
+        diag_warn(program_place(), remedy, "%s; the replay differs from the page in the last digits", why);
+    if (!page || (scene->replay && !page_vehicle_takes(page, scene)))
+        return scene;
+    Scene *out = pool_alloc(w->pool, sizeof *out);
+    *out = *scene;
+    out->page = page;
+    out->actions = NULL;
+    out->rest = NULL;
+    return out;
+}
+
 /* With an engine. */
 static void compute(Writing *w, const Model *model, const Scene *scene, const Request *request)
 {
@@ -248,8 +282,11 @@ static void compute(Writing *w, const Model *model, const Scene *scene, const Re
     if (w->kind == RUN)
         scene = scene_choose_step(pool, model, scene, request->solve,
                                   !open->options.lanes && engine_has_implicit(open->engine_name), request->quiet);
+    const Scene *whole = scene;
     if (w->study->replay)
         scene = scene_replay(pool, model, scene, w->study->replay);
+    if (wants_page(w))
+        scene = on_page(w, model, whole, scene, request);
     if (w->kind == LIVE) {
         scene = live_scene(pool, model, scene, request);
         port = live_port_open(pool, request->port, model, scene); /* before the compiler has worked for nothing */
@@ -257,10 +294,12 @@ static void compute(Writing *w, const Model *model, const Scene *scene, const Re
     EngineOptions options = open->options;
     options.quiet = request->quiet;
     /* a page shows whatever outputs tell; lanes are for code for all scenes */
-    const bool general = open->general || request->page || request->driven || w->study->replay || port || options.lanes;
-    w->engine = runs ? engine_open_run(pool, open->engine_name, model, scene, general ? NULL : request->scene,
-                                       request->picture, &options)
-                     : engine_open(pool, open->engine_name, model, &options);
+    const bool general = open->general || request->page || request->driven || w->study->replay || port ||
+                         (scene && scene->page) || options.lanes;
+    const char *engine = scene && scene->page ? "tcc" : open->engine_name;
+    w->engine =
+        runs ? engine_open_run(pool, engine, model, scene, general ? NULL : request->scene, request->picture, &options)
+             : engine_open(pool, engine, model, &options);
     if (w->kind == DRIVE)
         drive_write(pool, model, scene, w->engine, request);
     else if (w->kind == LIVE)
@@ -292,7 +331,7 @@ static void write_study(void *context)
         diag_fail_call(program_place(), "`gicrun -h` shows how",
                        "a page of --drive runs generated code, and does not go with --engine '%s'", open->engine_name);
     const Model *model = model_once(open, pool);
-    if (request.page || request.driven) /* the page shows forces of all wheels as arrows */
+    if (request.page || request.driven || wants_page(w)) /* the page shows forces of all wheels as arrows */
         model = model_watch_wheels(pool, model);
     const Scene *scene =
         request.scene ? scene_read(pool, request.scene, model, open->integrator, open->tolerance) : NULL;

@@ -250,7 +250,10 @@ void drive_write(Pool *pool, const Model *model, const Scene *scene, const Engin
     Text page = {.pool = pool};
     measure(&p, pool, engine);
     p.roles = drive_roles(pool, model, scene, engine);
-    p.module = drive_code(pool, model, scene, request, &p.module_size);
+    const char *why, *remedy;
+    p.module = drive_code(pool, model, scene, request, &p.module_size, &why, &remedy);
+    if (!p.module)
+        diag_fail(program_place(), remedy, "%s", why);
     templates_check(pool, NULL, (const Insertions *const[]){&page_points, NULL});
     template_expand(pool, &page, NULL, "drive.html.in", model->name, NULL, &page_points, &p);
     file_write(request->driven, page.s, page.size);

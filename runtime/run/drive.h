@@ -18,8 +18,9 @@ void drive_scene(Text *out, const Model *model, const Scene *scene);
 
 /* ---- drive_code.c: the vehicle as WebAssembly -------------------------------------------------------------------- */
 
-/* The module's bytes. Fails if no compiler for it is installed. */
-const char *drive_code(Pool *pool, const Model *model, const Scene *scene, const Request *request, size_t *size);
+/* The module's bytes; NULL: no compiler makes it here, *why says why, and *remedy what to do. */
+const char *drive_code(Pool *pool, const Model *model, const Scene *scene, const Request *request, size_t *size,
+                       const char **why, const char **remedy);
 
 /* ---- drive_roles.c: which input does what ------------------------------------------------------------------------ */
 

@@ -77,11 +77,18 @@ static bool clang(Build *b, const char *folder, const char *words, const char *c
     return false;
 }
 
+/* What clang would compute of constants by the C library of its own machine, or replace. */
+#define FUNCTIONS_OF_MUSL \
+    " -fno-builtin-sin -fno-builtin-cos -fno-builtin-tan -fno-builtin-asin -fno-builtin-acos -fno-builtin-atan" \
+    " -fno-builtin-atan2 -fno-builtin-exp -fno-builtin-log -fno-builtin-pow -fno-builtin-tanh" \
+    " -fno-builtin-hypot -fno-builtin-expm1"
+
 /* One object at a time, and linked without options that optimize: clang would hand the module to a wasm-opt of any age.
  */
 static void compile(Build *b, const char *folder)
 {
-    static const char compiling[] = "--target=wasm32-wasi -std=c11 -O2 -ffp-contract=off -fno-math-errno -c -o";
+    static const char compiling[] =
+        "--target=wasm32-wasi -std=c11 -O2 -ffp-contract=off -fno-math-errno" FUNCTIONS_OF_MUSL " -c -o";
     static const char *const source[] = {"model",        "drive",  "gic_runtime", "gic_road",
                                          "profile_form", "driver", "hands",       "knot_cross"};
     enum { SOURCES = sizeof source / sizeof *source };
@@ -117,7 +124,8 @@ static void generate_sources(Build *b, const Request *request)
     template_expand(b->pool, &b->drive, NULL, "drive.c.in", b->model->name, NULL, &drive_points, b);
 }
 
-const char *drive_code(Pool *pool, const Model *model, const Scene *scene, const Request *request, size_t *size)
+const char *drive_code(Pool *pool, const Model *model, const Scene *scene, const Request *request, size_t *size,
+                       const char **why, const char **remedy)
 {
     Build b = {.pool = pool, .model = model, .scene = scene};
     b.c.pool = b.h.pool = b.drive.pool = pool;
@@ -132,8 +140,8 @@ const char *drive_code(Pool *pool, const Model *model, const Scene *scene, const
         b.remedy = "set TMPDIR to a folder that can be written";
     }
     interrupt_release();
-    if (!b.code)
-        diag_fail(program_place(), b.remedy, "%s", b.message);
+    *why = b.message;
+    *remedy = b.remedy;
     *size = b.size;
     return b.code;
 }

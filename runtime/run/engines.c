@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: MIT
  * The engines by name. */
+#include "base/message.h"
 #include "compare/compare.h"
 #include "compare/mumps.h"
 #include "engine/engine.h"
+#include "host/host.h"
 #include "model/model.h"
 #include "run/engines.h"
 #include "run/stepper.h"
@@ -13,10 +15,19 @@
 
 typedef const Engine *Open(Pool *pool, const Model *model, const EngineOptions *options);
 
-const char *const engine_name[] = {"auto", "tcc", "cc", "gic", "gcp1", "gcp2", "tape", NULL};
+const char *const engine_name[] = {"auto", "tcc", "cc", "gic", "gcp1", "gcp2", "tape", "page", NULL};
 
-static Open *const engine_opener[] = {engine_auto, engine_tcc,  engine_cc,  engine_gic,
-                                      engine_gcp1, engine_gcp2, engine_tape};
+/* Whatever the page's vehicle computes is not an engine's: who runs it has another one beside it. */
+static const Engine *no_engine(Pool *pool, const Model *model, const EngineOptions *options)
+{
+    (void)pool;
+    (void)model;
+    (void)options;
+    diag_fail_call(program_place(), "take another engine", "the engine 'page' goes with a run of one scene by gicrun");
+}
+
+static Open *const engine_opener[] = {engine_auto, engine_tcc,  engine_cc,   engine_gic,
+                                      engine_gcp1, engine_gcp2, engine_tape, no_engine};
 
 static int engine_index(const char *name)
 {
@@ -51,7 +62,8 @@ const Engine *engine_open(Pool *pool, const char *name, const Model *model, cons
 /* Implicit steps need derivatives. */
 bool engine_has_implicit(const char *name)
 {
-    return engine_generates(name) && engine_opener[engine_index(name)] != engine_tape;
+    return engine_generates(name) && engine_opener[engine_index(name)] != engine_tape &&
+           engine_opener[engine_index(name)] != no_engine;
 }
 
 static void check_implicit(Pool *pool, const char *name, const Scene *scene, const EngineOptions *options)

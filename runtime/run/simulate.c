@@ -11,6 +11,7 @@
 #include "run/engines.h"
 #include "run/knot.h"
 #include "run/last_good.h"
+#include "run/page_vehicle.h"
 #include "run/run.h"
 #include "run/sampling.h"
 #include "run/scene_events.h"
@@ -229,6 +230,8 @@ static void prepare_plot(Run *run)
 
 int scene_outputs(const gic_model *model, const Scene *scene, const gic_head *self, gic_head *copy, int64_t *slumber)
 {
+    if (scene->page)
+        return page_vehicle_outputs(scene, model, self, copy);
     const Sleep *rest = scene->rest;
     const int64_t now = rest && rest->asleep ? rest->slumbers : 0;
     const bool stay = now && now == *slumber;
@@ -368,22 +371,11 @@ static void summary_of_events(Text *out, const Run *run)
         text_print(out, "  %-20s from t = %.6g s on\n", "vehicle at rest", o->rest);
 }
 
-static void summary(const Run *run, double total)
+/* Evaluations and solutions of the engine. */
+static void summary_of_work(Text *out, const Run *run)
 {
-    Text text = {.pool = run->pool}, *out = &text;
     const gic_head *head = run->self;
-    const Scene *scene = run->scene;
-    const double time = gic_time(head), solutions = (double)head->newton_count;
-    const char *results = run->request->results;
-    const char *integrator = integrator_name(scene->method);
-    const char *ratio = head->ratio > 1 ? pool_print(run->pool, ", ratio %d", head->ratio) : "";
-    const char *how = run->variable ? pool_print(run->pool, "of %s, tolerance %.6g", integrator, scene->tolerance)
-                                    : pool_print(run->pool, "of %.6g s (%s%s)", scene->step, integrator, ratio);
-    text_print(out, "%s: %.6g s in %lld steps %s, %lld rows%s%s\n", run->model->name, time, (long long)run->steps, how,
-               (long long)run->samples, results ? " in " : "",
-               !results               ? ""
-               : strcmp(results, "-") ? results
-                                      : "standard output");
+    const double solutions = (double)head->newton_count;
     text_print(out, "  right-hand sides     %lld\n", (long long)head->rhs_count);
     if (run->model->implicit)
         text_print(out, "  Jacobians            %lld\n",
@@ -395,7 +387,29 @@ static void summary(const Run *run, double total)
     text_print(out, "  Newton corrections   %lld in %lld subset solutions (%.3f each), %lld after the first check\n",
                (long long)head->correction_count, (long long)head->newton_count,
                solutions > 0 ? (double)head->correction_count / solutions : 0.0, (long long)head->late_count);
-    if (!run->variable && (scene->locate || scene->most_work))
+}
+
+static void summary(const Run *run, double total)
+{
+    Text text = {.pool = run->pool}, *out = &text;
+    const gic_head *head = run->self;
+    const Scene *scene = run->scene;
+    const double time = gic_time(head);
+    const char *results = run->request->results;
+    const char *integrator = integrator_name(scene->method);
+    const char *ratio = head->ratio > 1 ? pool_print(run->pool, ", ratio %d", head->ratio) : "";
+    const char *how = run->variable ? pool_print(run->pool, "of %s, tolerance %.6g", integrator, scene->tolerance)
+                                    : pool_print(run->pool, "of %.6g s (%s%s)", scene->step, integrator, ratio);
+    text_print(out, "%s: %.6g s in %lld steps %s, %lld rows%s%s\n", run->model->name, time, (long long)run->steps, how,
+               (long long)run->samples, results ? " in " : "",
+               !results               ? ""
+               : strcmp(results, "-") ? results
+                                      : "standard output");
+    if (scene->page)
+        text_print(out, "  digits               those of the page of --drive: its WebAssembly, interpreted\n");
+    else
+        summary_of_work(out, run);
+    if (!run->variable && !scene->page && (scene->locate || scene->most_work))
         text_print(out, "  work of a step       at most %lld right-hand sides and looks at contacts and gears\n",
                    (long long)run->most_work);
     summary_of_skips(out, head);
@@ -486,6 +500,8 @@ int scene_start(const Engine *engine, const Scene *scene, gic_head *self)
         status = scene_set_fast(model, scene, self);
     if (scene->rest)
         sleep_start(scene->rest, model, self);
+    if (scene->page && status == GIC_OK)
+        status = page_vehicle_start(scene, model, self);
     return status;
 }
 
@@ -597,6 +613,8 @@ int scene_step_awake(const Engine *engine, const gic_model *model, const Scene *
 int scene_step(const Engine *engine, const gic_model *model, const Scene *scene, Variable *variable, gic_head *self,
                double end)
 {
+    if (scene->page)
+        return page_vehicle_step(scene, model, self);
     if (scene->replay)
         replay_look(scene, gic_time(self), instance_array(self, model->input_offset));
     if (scene->hold)
@@ -714,7 +732,8 @@ void simulate(Pool *pool, const Engine *engine, const Model *mechanism, const Sc
                .scene = scene,
                .request = request,
                .animation = animation,
-               .watch = step_watch_new(pool, step_theory_new(pool, mechanism), whole, engine, false)};
+               .watch = scene->page ? NULL /* it would look at steps of the engine */
+                                    : step_watch_new(pool, step_theory_new(pool, mechanism), whole, engine, false)};
     run.self = instance_new(pool, engine);
     run.copy = instance_new(pool, engine);
     int status = scene_start(engine, scene, run.self);

@@ -100,6 +100,11 @@ static void read_columns(Pool *pool, const CsvTable *table, const Model *model, 
                 *value++ = cell(table, row, i);
 }
 
+bool replay_is_of_page(Pool *pool, const char *path)
+{
+    return !hold_is(csv_read(pool, path, header, NULL));
+}
+
 const Scene *scene_replay(Pool *pool, const Model *model, const Scene *scene, const char *path)
 {
     Scene *out = pool_alloc(pool, sizeof *out);

@@ -18,6 +18,8 @@ struct Replay {
     bool holding;
 };
 
+/* Is the recording in a file one of a page, unlike those of --live? */
+bool replay_is_of_page(Pool *pool, const char *path);
 /* The scene with the hands and the parameters of a recording, up to its end. Fails if it was not recorded with the
  * model and the scene. Conditions and sleep are left out, as on the page. */
 const Scene *scene_replay(Pool *pool, const Model *model, const Scene *scene, const char *path);

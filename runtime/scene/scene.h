@@ -17,11 +17,12 @@ typedef struct Profile Profile; /* profile.h */
 
 /* ---- scene.c, scene_*.c: what the vehicle does and where; models/SCENE.md */
 
-typedef struct Driver Driver;   /* driver.h */
-typedef struct Actions Actions; /* action.h */
-typedef struct Sleep Sleep;     /* sleep.h */
-typedef struct Replay Replay;   /* replay.h */
-typedef struct Hold Hold;       /* hold.h */
+typedef struct Driver Driver;           /* driver.h */
+typedef struct Actions Actions;         /* action.h */
+typedef struct Sleep Sleep;             /* sleep.h */
+typedef struct Replay Replay;           /* replay.h */
+typedef struct PageVehicle PageVehicle; /* run/page_vehicle.h */
+typedef struct Hold Hold;               /* hold.h */
 
 /* A line on the road: its points, m, world. */
 typedef struct Mark {
@@ -70,6 +71,7 @@ typedef struct Scene {
     Driver *driver;     /* changes during the run; NULL: no driver */
     Sleep *rest;        /* changes during the run; NULL: the vehicle never sleeps */
     Replay *replay;     /* the same; NULL: nothing is replayed */
+    PageVehicle *page;  /* the same; what computes instead of the engine; NULL: the engine */
     Hold *hold;         /* the same; NULL: inputs do not come from outside */
     Actions *actions;   /* the same; NULL: nothing depends on a condition */
     RoadCourse *course; /* cones and lanes for pages; NULL: none */

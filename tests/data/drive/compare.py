@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 # compare.py RECORDING.csv RESULTS.csv DIGITS: the outputs of a recording of a page of `gicrun --drive`, and results of its
-# replay, agree at all times that both have, as shares of the largest value of each column.
+# replay, or two results, agree at all times that both have, as shares of the largest value of each column; 0: every digit.
 import os
 import sys
 
@@ -22,4 +22,4 @@ for name in names:
             worst, where = off, '%s at %g s' % (name, results['time'][k])
 print('%d columns at %d times: %g, %s' % (len(names), len(common), worst, where))
 moved = max(recording['chassis_velocity.x']) > 3 if 'chassis_velocity.x' in recording else True
-sys.exit(not (len(names) >= 10 and len(common) > 20 and moved and worst <= digits))
+sys.exit(not (len(names) >= 2 and len(common) > 20 and moved and worst <= digits))
