@@ -9,6 +9,7 @@ import sys
 import time
 
 from chromium import TALL, WIDTH, Browser, note, read_png
+from manners import dark, keyboard, telephone
 from page import read_csv
 
 
@@ -280,27 +281,6 @@ def shown_units(browser, path, results):
          abs(float(browser.text('facts').split()[0]) - 36) < 2, browser.text('facts'))
 
 
-def dark(browser, path):
-    """On a dark ground texts are light, with contrast, and so is what is light otherwise dark."""
-    def shine(colour):
-        def part(c):
-            return c / 3294.6 if c <= 10 else ((c / 255 + .055) / 1.055) ** 2.4
-        return sum(w * part(c) for w, c in zip((.2126, .7152, .0722), colour))
-    for scheme in 'dark', 'light':
-        browser.call('Emulation.setEmulatedMedia', features=[{'name': 'prefers-color-scheme', 'value': scheme}])
-        browser.open(path, 't=5')
-        rows = read_png(browser.picture())
-        mean = sum(map(sum, rows[TALL // 3])) / 3 / WIDTH
-        note('%s: the ground' % scheme, mean < 110 if scheme == 'dark' else mean > 150, '%g' % mean)
-        ink, panel = browser.ask('["--ink", "--quiet"].map((name) => {const e = document.createElement("i"); e.style.color = '
-                                 'style_color(name); document.body.append(e); const c = getComputedStyle(e).color.match(/[0-9.]+/g)'
-                                 '.slice(0, 3).map(Number); e.remove(); return c})'), rows[TALL - 16][WIDTH // 2]
-        for name, colour in zip(('texts', 'quiet texts'), ink):
-            low, high = sorted((shine(colour), shine(panel)))
-            note('%s: contrast of %s' % (scheme, name), (high + .05) / (low + .05) > 4.5, '%s on %s' % (colour, panel))
-    browser.call('Emulation.setEmulatedMedia', features=[])
-
-
 def save(browser, path, profile):
     """Picture and video arrive as files of their kind; the loop begins again."""
     folder = profile + '/saved'
@@ -351,7 +331,9 @@ def main():
     second(browser, two)
     readings(browser, turning, turned)
     choice(browser, turning, turned)
-    dark(browser, lanes)
+    keyboard(browser, two, 't=5')
+    telephone(browser, two, 't=5', 'n')
+    dark(browser, lanes, 't=5')
     shown_units(browser, units, unit_rows)
     browser.open(beside, 't=2')
     pairs = browser.ask('panels.flatMap((p) => p.curves.map((c) => c.k === SPEED || c.other !== undefined && '

@@ -12,6 +12,7 @@ import time
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'animate'))
 
 from chromium import TALL, WIDTH, Browser, note, read_png  # noqa: E402
+from manners import dark, keyboard, telephone  # noqa: E402
 from page import read_csv  # noqa: E402
 
 # The module of a page by itself: all rows of the scene's results.
@@ -334,6 +335,10 @@ def main():
     touch(browser, drive)
     light(browser, drive)
     narrow(browser, drive)
+    keyboard(browser, driver)
+    telephone(browser, drive, keys='xn')
+    telephone(browser, drive, keys='xnp')
+    dark(browser, driver)
     scenes(browser, pages)
     note('no complaint, no request', not browser.complaints, '; '.join(browser.complaints))
     browser.close()
