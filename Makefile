@@ -358,14 +358,14 @@ stress: test-programs fuzz
 
 demo: all
 	@mkdir -p $(BUILD)/demo
-	$(BUILD)/gicrun models/hmmwv.veh models/scenes/paper_run.scene -o $(BUILD)/demo/hmmwv.csv \
-	    --plot $(BUILD)/demo/hmmwv.svg --animate $(BUILD)/demo/hmmwv.html
-	$(BUILD)/gicrun models/hmmwv_vehicle.veh models/scenes/full_run.scene -o $(BUILD)/demo/full_run.csv \
-	    --plot $(BUILD)/demo/full_run.svg --animate $(BUILD)/demo/full_run.html
 	@rm -f $(BUILD)/demo/drive.html
 	@if $(BUILD)/gicrun --drive $(BUILD)/demo/drive.html models/hmmwv_vehicle.veh models/scenes/full_run.scene \
 	    2>$(BUILD)/demo/drive.log; then echo "to drive: $(BUILD)/demo/drive.html"; \
 	else echo "no page to drive:"; cat $(BUILD)/demo/drive.log; fi
+	$(BUILD)/gicrun models/hmmwv.veh models/scenes/paper_run.scene -o $(BUILD)/demo/hmmwv.csv \
+	    --plot $(BUILD)/demo/hmmwv.svg --animate $(BUILD)/demo/hmmwv.html
+	$(BUILD)/gicrun models/hmmwv_vehicle.veh models/scenes/full_run.scene -o $(BUILD)/demo/full_run.csv \
+	    --plot $(BUILD)/demo/full_run.svg --animate $(BUILD)/demo/full_run.html
 	@echo "pictures: $(BUILD)/demo/hmmwv.svg, $(BUILD)/demo/full_run.svg"
 	@echo "pages:    $(BUILD)/demo/hmmwv.html, $(BUILD)/demo/full_run.html"
 	@echo "numbers:  $(BUILD)/demo/hmmwv.csv, $(BUILD)/demo/full_run.csv"

@@ -109,6 +109,10 @@ check 'the other recording has the parameter' grep -q 'parameter.bar' "$work/han
 run -q --replay "$work/handed.csv" "$tutorial.veh" "$tutorial.scene" -o "$work/handed_replay.csv"
 check 'a recording of a driver, a gamepad and the driver again is replayed' compare "$work/handed.csv" "$work/handed_replay.csv" 0
 
+# the first of what `make demo` makes and names; before that it only builds
+first() { make --no-print-directory -n -C "$root" demo | grep -m 1 -E 'full_run|paper_run|echo "to drive' | grep -q -e --drive; }
+check 'the demo makes a page to drive first' first
+
 # ---- mistakes
 
 # misses WHAT STATUS WORDS ARGUMENTS...: a run that fails and leaves no page
