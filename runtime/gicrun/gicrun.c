@@ -18,7 +18,8 @@ static const char usage[] =
     "       gicrun --equilibrium|--modes MODEL.veh [SCENE] [-o results.csv]\n"
     "       gicrun --linearize [--at TIME] MODEL.veh [SCENE] [-o results.csv|.npz|.mat]\n"
     "       gicrun --gradient FORMULA MODEL.veh SCENE [NAME ...] [-o page.html|gradient.csv]\n"
-    "       gicrun --identify measured.csv MODEL.veh SCENE NAME ... [-o found.csv]\n"
+    "       gicrun --identify measured.csv MODEL.veh SCENE NAME ... [-o page.html|found.csv]\n"
+    "       gicrun --optimize FORMULA MODEL.veh SCENE NAME=LOW:HIGH ... [-o page.html|found.csv]\n"
     "       gicrun --trim [--linearize] MODEL.veh [SCENE] key=value ... [-o results.csv|.scene]\n"
     "       gicrun --kc [--axle NAME] [--report page.html] MODEL.veh [SCENE] [-o results.csv]\n"
     "       gicrun --sheet MODEL.veh [SCENE] [-o page.html|results.csv]\n"
@@ -53,6 +54,7 @@ static const char help[] =
     "                     derivatives of its value at the end, of integral(FORMULA) or of\n"
     "                     maximum(FORMULA) by initial state, parameters, inputs\n"
     "      --identify FILE parameters from measurements\n"
+    "      --optimize FORMULA  numbers with which it is nearest to 0, models/OPTIMIZE.md\n"
     "      --kc           kinematics of axles over travel and steering, models/KC.md\n"
     "      --axle NAME, --travel M\n"
     "                     of --kc: front, rear or a number from the front; up and down, m (0.08)\n"
@@ -88,8 +90,8 @@ typedef struct Asked {
     const char *vary[VARIED_MOST]; /* [study.varied] */
     const char *model;
     bool rests, modes, linear, trim, kinematics, sheet, loads, live, general, quiet;
-    const char *animated, *driven, *report; /* --animate, --drive, --report */
-    double at;                              /* --at; NAN: not given */
+    const char *animated, *driven, *report, *optimized; /* --animate, --drive, --report, --optimize */
+    double at;                                          /* --at; NAN: not given */
     gicl_options options;
     gicl_study study;
 } Asked;
@@ -222,6 +224,7 @@ static Asked read_command_line(int count, char **word)
         {"trim", .on = &asked.trim},
         {"gradient", .text = &study->formula},
         {"identify", .text = &study->measured},
+        {"optimize", .text = &asked.optimized},
         {"kc", .on = &asked.kinematics},
         {"sheet", .on = &asked.sheet},
         {"manoeuvre", .text = &study->manoeuvre},
@@ -248,14 +251,15 @@ static Asked read_command_line(int count, char **word)
     const int files = count - first;
     if (files < 1)
         usage_fail("gicrun", "no model given", NULL);
-    const bool derives = asked.linear || asked.trim || study->formula || study->measured;
+    const bool by_run = study->formula || study->measured || asked.optimized;
+    const bool derives = asked.linear || asked.trim || by_run;
     if (asked.rests + asked.modes + (asked.linear || asked.trim) + asked.kinematics + asked.sheet +
             (study->states != NULL) + (study->manoeuvre != NULL) + (study->formula != NULL) +
-            (study->measured != NULL) >
+            (study->measured != NULL) + (asked.optimized != NULL) >
         1)
         usage_fail("gicrun",
-                   "one of --eval, --equilibrium, --modes, --linearize, --trim, --gradient, --identify, --kc, --sheet "
-                   "and --manoeuvre, please",
+                   "one of --eval, --equilibrium, --modes, --linearize, --trim, --gradient, --identify, --optimize, "
+                   "--kc, --sheet and --manoeuvre, please",
                    NULL);
     if (!asked.kinematics && (study->axle || study->travel > 0 || asked.loads))
         usage_fail("gicrun", "--axle, --travel and --loads go with --kc", NULL);
@@ -282,9 +286,9 @@ static Asked read_command_line(int count, char **word)
         usage_fail("gicrun", "--at goes with --linearize", NULL);
     if (at && asked.trim)
         usage_fail("gicrun", "the operating point is that of --at or that of --trim, not both", NULL);
-    if (files < 2 && (runs || at || study->formula || study->measured))
+    if (files < 2 && (runs || at || by_run))
         usage_fail("gicrun", "no scene given", NULL);
-    const bool keyed = study->manoeuvre || asked.trim || study->formula || study->measured;
+    const bool keyed = study->manoeuvre || asked.trim || by_run;
     const bool keys_first = study->manoeuvre || (asked.trim && files > 1 && strchr(word[first + 1], '='));
     const int scenes = files > 1 && !keys_first;
     study->key = (const char *const *)word + first + 1 + scenes;
@@ -302,10 +306,11 @@ static Asked read_command_line(int count, char **word)
     if (derives && strcmp(asked.options.engine, gicl_word("engine", 0)) != 0 &&
         strcmp(asked.options.engine, "tape") != 0)
         usage_fail("gicrun",
-                   asked.linear     ? "derivatives are those of the engine tape: --linearize does not go with --engine"
-                   : asked.trim     ? "derivatives are those of the engine tape: --trim does not go with --engine"
-                   : study->formula ? "derivatives are those of the engine tape: --gradient does not go with --engine"
-                                    : "derivatives are those of the engine tape: --identify does not go with --engine",
+                   asked.linear      ? "derivatives are those of the engine tape: --linearize does not go with --engine"
+                   : asked.trim      ? "derivatives are those of the engine tape: --trim does not go with --engine"
+                   : study->formula  ? "derivatives are those of the engine tape: --gradient does not go with --engine"
+                   : study->measured ? "derivatives are those of the engine tape: --identify does not go with --engine"
+                                     : "derivatives are those of the engine tape: --optimize does not go with --engine",
                    asked.options.engine);
     if (asked.options.integrator && !known("integrator", asked.options.integrator))
         usage_fail("gicrun", "there are ab3, rk4, ros2, ros3, imex, adams, rkck, bdf and auto; there is no integrator",
@@ -313,7 +318,7 @@ static Asked read_command_line(int count, char **word)
     if (study->plot && !runs)
         usage_fail("gicrun",
                    "--plot goes with a run, not with --eval, --equilibrium, --modes, --linearize, --trim, --gradient, "
-                   "--identify, --kc, "
+                   "--identify, --optimize, --kc, "
                    "--sheet or "
                    "--manoeuvre",
                    NULL);
@@ -324,7 +329,7 @@ static Asked read_command_line(int count, char **word)
     if (asked.animated && !runs)
         usage_fail("gicrun",
                    "--animate goes with a run, not with --eval, --equilibrium, --modes, --linearize, --trim, "
-                   "--gradient, --identify, --kc, "
+                   "--gradient, --identify, --optimize, --kc, "
                    "--sheet or "
                    "--manoeuvre",
                    NULL);
@@ -333,8 +338,8 @@ static Asked read_command_line(int count, char **word)
     if (asked.driven && (!runs || study->results || study->plot || asked.animated || study->replay))
         usage_fail("gicrun",
                    "--drive writes a page and no results: it goes neither with -o, --plot, --animate and --replay "
-                   "nor with --eval, --equilibrium, --modes, --linearize, --trim, --gradient, --identify, --kc, "
-                   "--sheet and --manoeuvre",
+                   "nor with --eval, --equilibrium, --modes, --linearize, --trim, --gradient, --identify, "
+                   "--optimize, --kc, --sheet and --manoeuvre",
                    NULL);
     if (asked.driven && !path_ends(asked.driven, ".html"))
         usage_fail("gicrun", "the page must end in .html, unlike", asked.driven);
@@ -342,14 +347,14 @@ static Asked read_command_line(int count, char **word)
         usage_fail("gicrun",
                    "--live is a run that time and packets drive: it goes neither with --plot, --animate, --drive and "
                    "--replay nor with --eval, --equilibrium, --modes, --linearize, --trim, --gradient, --identify, "
-                   "--kc, --sheet and --manoeuvre",
+                   "--optimize, --kc, --sheet and --manoeuvre",
                    NULL);
     if (!asked.live && (study->record || study->inputs || study->seconds > 0))
         usage_fail("gicrun", "--inputs, --record and --seconds go with --live", NULL);
     if (study->replay && !runs)
         usage_fail("gicrun",
                    "--replay goes with a run, not with --eval, --equilibrium, --modes, --linearize, --trim, "
-                   "--gradient, --identify, --kc, "
+                   "--gradient, --identify, --optimize, --kc, "
                    "--sheet or "
                    "--manoeuvre",
                    NULL);
@@ -368,12 +373,14 @@ static Asked read_command_line(int count, char **word)
                   : asked.trim       ? "trim"
                   : study->formula   ? "gradient"
                   : study->measured  ? "identify"
+                  : asked.optimized  ? "optimize"
                   : asked.kinematics ? "kc"
                   : asked.sheet      ? "sheet"
                   : study->manoeuvre ? "manoeuvre"
                   : asked.driven     ? "drive"
                   : asked.live       ? "live"
                                      : "run";
+    study->formula = asked.optimized ? asked.optimized : study->formula;
     study->page = asked.animated ? asked.animated : asked.driven ? asked.driven : asked.report;
     study->loads = asked.loads;
     study->quiet = asked.quiet;

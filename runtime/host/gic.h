@@ -252,8 +252,9 @@ GICL_API int gicl_array_get(gicl_library *library, gicl_handle result, int index
 typedef struct gicl_study {
     size_t size;         /* sizeof(gicl_study) */
     const char *kind;    /* "run", "drive", "eval", "equilibrium", "modes", "linearize", "kc", "sheet", "manoeuvre",
-                          * "trim", "gradient", "identify", "live" */
-    const char *scene;   /* a path; "run", "drive", "live", "gradient" and "identify" need one, "manoeuvre" has none */
+                          * "trim", "gradient", "identify", "optimize", "live" */
+    const char *scene;   /* a path; "run", "drive", "live", "gradient", "identify" and "optimize" need one, "manoeuvre"
+                          * has none */
     const char *results; /* -o: "eval" and "linearize" need it, "drive" writes none */
     const char *page;    /* of "run" --animate, of "drive" its page, of "kc" and "manoeuvre" --report */
     const char *plot, *with, *replay; /* of "run" */
@@ -264,9 +265,10 @@ typedef struct gicl_study {
     int loads;                        /* of "kc": 1: compliance */
     const char *compare;              /* of "kc", "sheet" and "manoeuvre" */
     const char *manoeuvre;            /* its name */
-    const char *formula, *measured;   /* of "gradient"; of "identify": a file */
+    const char *formula, *measured;   /* of "gradient" and "optimize"; of "identify": a file */
     const char *const *key; /* [keys] words key=value of "manoeuvre" and "trim"; with them "linearize" is about
-                             * the motion of "trim"; names of "gradient" and "identify" */
+                             * the motion of "trim"; names of "gradient" and "identify"; words name=low:high of
+                             * "optimize" */
     int keys;
     const char *trace;  /* of "manoeuvre" */
     const char *record; /* of "live" */

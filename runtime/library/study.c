@@ -16,6 +16,7 @@
 #include "run/linear_model.h"
 #include "run/linearize.h"
 #include "run/manoeuvre.h"
+#include "run/optimize.h"
 #include "run/page_vehicle.h"
 #include "run/run.h"
 #include "run/sheet.h"
@@ -43,12 +44,14 @@ typedef enum Kind {
     TRIM,
     GRADIENT,
     IDENTIFY,
+    OPTIMIZE,
     LIVE,
     KINDS
 } Kind;
 
-static const char *const kind_name[KINDS] = {"run",   "drive",     "eval", "equilibrium", "modes",    "linearize", "kc",
-                                             "sheet", "manoeuvre", "trim", "gradient",    "identify", "live"};
+static const char *const kind_name[KINDS] = {"run",       "drive",    "eval",     "equilibrium", "modes",
+                                             "linearize", "kc",       "sheet",    "manoeuvre",   "trim",
+                                             "gradient",  "identify", "optimize", "live"};
 
 /* ---- the call -------------------------------------------------------------------------------------------------- */
 
@@ -62,7 +65,7 @@ static const struct {
     int takes, needs;
 } word_of[] = {
     {"scene", offsetof(gicl_study, scene), ALL & ~IN(MANOEUVRE),
-     IN(RUN) | IN(DRIVE) | IN(GRADIENT) | IN(IDENTIFY) | IN(LIVE)},
+     IN(RUN) | IN(DRIVE) | IN(GRADIENT) | IN(IDENTIFY) | IN(OPTIMIZE) | IN(LIVE)},
     {"results", offsetof(gicl_study, results), ALL & ~IN(DRIVE), IN(EVAL) | IN(LINEARIZE)},
     {"page", offsetof(gicl_study, page), IN(RUN) | IN(DRIVE) | IN(KC) | IN(SHEET) | IN(MANOEUVRE), IN(DRIVE)},
     {"plot", offsetof(gicl_study, plot), IN(RUN), 0},
@@ -72,7 +75,7 @@ static const struct {
     {"axle", offsetof(gicl_study, axle), IN(KC), 0},
     {"compare", offsetof(gicl_study, compare), IN(KC) | IN(SHEET) | IN(MANOEUVRE), 0},
     {"manoeuvre", offsetof(gicl_study, manoeuvre), IN(MANOEUVRE), IN(MANOEUVRE)},
-    {"formula", offsetof(gicl_study, formula), IN(GRADIENT), IN(GRADIENT)},
+    {"formula", offsetof(gicl_study, formula), IN(GRADIENT) | IN(OPTIMIZE), IN(GRADIENT) | IN(OPTIMIZE)},
     {"measured", offsetof(gicl_study, measured), IN(IDENTIFY), IN(IDENTIFY)},
     {"trace", offsetof(gicl_study, trace), IN(MANOEUVRE), 0},
     {"record", offsetof(gicl_study, record), IN(LIVE), 0},
@@ -111,11 +114,12 @@ static int check_words(const gicl_study *study, Kind kind, bool signals, gicl_me
     if (kind == LIVE && study->seconds == 0 && !signals)
         return call_wrong(said, "give it 'seconds', or a listener with 'signals'",
                           "nothing would end a live run: no signal is the library's");
-    const int keyed = IN(MANOEUVRE) | IN(TRIM) | IN(GRADIENT) | IN(IDENTIFY) | IN(LINEARIZE);
+    const int keyed = IN(MANOEUVRE) | IN(TRIM) | IN(GRADIENT) | IN(IDENTIFY) | IN(OPTIMIZE) | IN(LINEARIZE);
     if (study->keys < 0 || (study->keys && (!(keyed & IN(kind)) || !study->key)))
         return call_wrong(
             said, NULL,
-            "'keys' is the number of words in 'key', which go with manoeuvre, trim, linearize, gradient and identify");
+            "'keys' is the number of words in 'key', which go with manoeuvre, trim, linearize, gradient, identify and "
+            "optimize");
     const int varying = IN(KC) | IN(SHEET) | IN(MANOEUVRE);
     if (study->varied < 0 || (study->varied && (!(varying & IN(kind)) || !study->vary)))
         return call_wrong(said, NULL,
@@ -365,6 +369,8 @@ static void write_study(void *context)
             gradient_report(pool, model, scene, &request);
         else if (w->kind == IDENTIFY)
             identify_report(pool, model, scene, &request);
+        else if (w->kind == OPTIMIZE)
+            optimize_report(pool, model, scene, &request);
         else
             compute(w, model, scene, &request);
     }
@@ -387,7 +393,7 @@ int gicl_write(gicl_library *library, gicl_handle model, const gicl_study *study
             &use,
             call_wrong(said,
                        "one of run, drive, eval, equilibrium, modes, linearize, kc, sheet, manoeuvre, trim, gradient, "
-                       "identify, live",
+                       "identify, optimize, live",
                        "there is no study '%s'", study->kind ? study->kind : ""));
     int status = check_words(study, w.kind, said && said->list.listener && said->list.listener->signals, said);
     if (status != GICL_OK)

@@ -3,11 +3,14 @@
  * method of Levenberg and Marquardt with the exact derivatives of the run. The noise of an output is not known: the
  * first fit takes the spread of what was measured, and further ones what the last left. */
 #include "run/identify.h"
+#include "base/file.h"
 #include "base/message.h"
 #include "base/text.h"
 #include "gic_runtime.h"
 #include "host/gsl_errors.h"
 #include "host/host.h"
+#include "run/fit_page.h"
+#include "run/number_place.h"
 #include "run/tangent_run.h"
 
 #include <math.h>
@@ -117,40 +120,6 @@ static void guess_noise(Fit *fit)
     }
 }
 
-/* ---- the scene with other numbers ----------------------------------------------------------------------- */
-
-/* The scene's own place of a variable; NULL: it has none. */
-static double *place_of(const Fit *fit, const RunVariable *v)
-{
-    const Model *model = fit->model;
-    int place = model->free_base ? 6 : 0, places = place; /* small motions: those of the base first */
-    if (v->kind == BY_PARAMETER)
-        return &fit->scene->parameter[v->index];
-    for (int c = 0; c < model->coordinates; ++c)
-        places += !model->coordinate[c].driven;
-    for (int c = 0; c < model->coordinates && v->kind == BY_INITIAL; ++c) {
-        if (model->coordinate[c].driven)
-            continue;
-        if (v->index == place || v->index == places + place)
-            return v->index == place ? &fit->scene->value[c] : &fit->scene->rate[c];
-        ++place;
-    }
-    return NULL;
-}
-
-/* A scene whose numbers may change. */
-static const Scene *copy_scene(Pool *pool, const Model *model, const Scene *scene)
-{
-    Scene *copy = pool_alloc(pool, sizeof *copy);
-    const size_t numbers = ((size_t)model->coordinates + 1) * sizeof(double);
-    const size_t parameters = ((size_t)model->tunables + 1) * sizeof(double);
-    *copy = *scene;
-    copy->value = memcpy(pool_alloc(pool, numbers), scene->value, numbers - sizeof(double));
-    copy->rate = memcpy(pool_alloc(pool, numbers), scene->rate, numbers - sizeof(double));
-    copy->parameter = memcpy(pool_alloc(pool, parameters), scene->parameter, parameters - sizeof(double));
-    return copy;
-}
-
 /* ---- runs ----------------------------------------------------------------------------------------------- */
 
 /* Outputs less what was measured, and their derivatives, with the scene's present numbers. Returns a status. */
@@ -177,7 +146,7 @@ static int run_through(Fit *fit)
 static int run_with(Fit *fit, const gsl_vector *x)
 {
     for (int k = 0; k < fit->variables; ++k)
-        *place_of(fit, &fit->variable[k]) = gsl_vector_get(x, (size_t)k) * fit->unit[k];
+        *number_place(fit->model, fit->scene, &fit->variable[k]) = gsl_vector_get(x, (size_t)k) * fit->unit[k];
     return fit->status = run_through(fit);
 }
 
@@ -293,15 +262,6 @@ static End fit_once(Fit *fit, gsl_vector *x, gsl_matrix *covariance, size_t *unt
     return !told ? UNTOLD : there ? FOUND : fit->status != GIC_OK ? NO_RUN : LOST;
 }
 
-/* Variables that the scene has a place for. */
-static void check_variables(const Fit *fit)
-{
-    for (int k = 0; k < fit->variables; ++k)
-        if (!place_of(fit, &fit->variable[k]))
-            diag_fail_call(program_place(), "parameter/NAME, and initial/NAME and initial/NAME.rate of coordinates",
-                           "identification does not find '%s'", fit->variable[k].name);
-}
-
 static Fit open(Pool *pool, const Model *model, const Scene *scene, const Request *request)
 {
     if (request->keys == 0)
@@ -310,11 +270,11 @@ static Fit open(Pool *pool, const Model *model, const Scene *scene, const Reques
     if (scene->equilibrium)
         diag_fail((Place){scene->source, 0, 0}, "give its places, which gicrun --equilibrium prints",
                   "a start in equilibrium follows parameters, and --identify holds the start");
-    Fit fit = {.pool = pool, .model = model, .scene = copy_scene(pool, model, scene)};
+    Fit fit = {.pool = pool, .model = model, .scene = scene_with_numbers(pool, model, scene)};
     fit.table = csv_read(pool, request->measured, "time [s],chassis.z [m]", NULL);
     fit.run = tangent_open(pool, model, fit.scene, request->solve, request->key, request->keys);
     fit.variables = tangent_variables(fit.run, &fit.variable);
-    check_variables(&fit);
+    number_places_check(model, fit.scene, fit.variable, fit.variables, "identification");
     find_columns(&fit);
     find_steps(&fit);
     const size_t outputs = (size_t)model->output_components + 1, n = (size_t)fit.variables;
@@ -360,11 +320,61 @@ static void write_csv(const Fit *fit, const Found *found, const char *path)
     interrupt_release();
 }
 
+/* What was done, one line. */
+static const char *summary(const Fit *fit)
+{
+    return pool_print(fit->pool, "%d numbers from %d measurements, intervals of %g %%", fit->variables,
+                      fit->table->rows * fit->columns, 100 * likelihood);
+}
+
+/* A diagram of each output that was measured. */
+static void write_page(const Fit *fit, const Found *found, const char *path)
+{
+    Pool *pool = fit->pool;
+    const int rows = fit->table->rows;
+    FitPage page = {.name = fit->model->name,
+                    .number = summary(fit),
+                    .curve = {"found", "measured"},
+                    .panels = fit->columns,
+                    .column = {"start", "value", "deviation", "low", "high"},
+                    .variables = fit->variables,
+                    .variable = fit->variable};
+    Panel *panel = pool_alloc(pool, (size_t)fit->columns * sizeof *panel);
+    double *cell = pool_alloc(pool, FIT_COLUMNS * (size_t)fit->variables * sizeof *cell);
+    double *time = pool_alloc(pool, (size_t)rows * sizeof *time);
+    page.panel = panel;
+    page.cell = cell;
+    for (int r = 0; r < rows; ++r)
+        time[r] = measured(fit, r, fit->time);
+    for (int c = 0; c < fit->columns; ++c) {
+        double *y = pool_alloc(pool, 2 * (size_t)rows * sizeof *y);
+        const char *unit = fit->table->unit[fit->column[c]];
+        for (int r = 0; r < rows; ++r) {
+            y[rows + r] = measured(fit, r, fit->column[c]);
+            y[r] = fit->rest[r * fit->columns + c] + y[rows + r];
+        }
+        Text title = {.pool = pool};
+        text_html(&title, fit->table->name[fit->column[c]]);
+        panel[c] = (Panel){.title = title.s,
+                           .unit = unit ? unit : "1",
+                           .below = "time, s",
+                           .rows = rows,
+                           .curves = 2,
+                           .x = time,
+                           .y = y};
+    }
+    for (int k = 0; k < fit->variables; ++k) {
+        const double number[] = {fit->variable[k].value, found[k].value, found[k].deviation, found[k].low,
+                                 found[k].high};
+        memcpy(cell + FIT_COLUMNS * k, number, sizeof number);
+    }
+    fit_page_write(pool, &page, path);
+}
+
 static void print(const Fit *fit, const Found *found)
 {
     Text text = {.pool = fit->pool}, *out = &text;
-    text_print(out, "%s: %d numbers from %d measurements, intervals of %g %%\n\n", fit->model->name, fit->variables,
-               fit->table->rows * fit->columns, 100 * likelihood);
+    text_print(out, "%s: %s\n\n", fit->model->name, summary(fit));
     text_print(out, "%-32s  %14s  %14s  %12s  %14s  %14s\n", "variable", "start", "value", "deviation", "low", "high");
     for (int k = 0; k < fit->variables; ++k)
         text_print(out, "%-32s  %14.9g  %14.9g  %12.4g  %14.9g  %14.9g %s\n", fit->variable[k].name,
@@ -451,7 +461,9 @@ void identify_report(Pool *pool, const Model *model, const Scene *scene, const R
     gsl_vector_free(x);
     check_end(&fit, end, untold);
     check_fit(&fit);
-    if (request->results)
+    if (request->results && path_ends(request->results, ".html"))
+        write_page(&fit, found, request->results);
+    else if (request->results)
         write_csv(&fit, found, request->results);
     if (!request->results || strcmp(request->results, "-") != 0)
         print(&fit, found);

@@ -10,7 +10,8 @@
 #include "run/run.h"
 #include "scene/scene.h"
 
-/* --identify: a table of what was found, and with -o as CSV. Ends in diag_fail. */
+/* --identify: a table of what was found, and with -o as CSV, or as a page where the name ends in .html. Ends in
+ * diag_fail. */
 void identify_report(Pool *pool, const Model *model, const Scene *scene, const Request *request);
 
 #endif

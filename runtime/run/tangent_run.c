@@ -91,6 +91,7 @@ static void add_input(TangentRun *run, int input, const char *const *wanted, int
                           .unit = signal->unit,
                           .kind = BY_INPUT,
                           .index = input,
+                          .number = k,
                           .profile = unit,
                           .value = number_of(profile, k)},
             wanted, count);

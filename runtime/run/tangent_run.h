@@ -17,7 +17,7 @@ typedef enum VariableKind { BY_INITIAL, BY_PARAMETER, BY_INPUT } VariableKind;
 typedef struct RunVariable {
     const char *name, *unit; /* "parameter/k" */
     VariableKind kind;
-    int index;              /* small motion, parameter, input */
+    int index, number;      /* small motion, parameter, input; number: of the input's profile */
     const Profile *profile; /* of an input: what it changes by for a unit of the number; NULL: by 1 at all times */
     double value;           /* in the scene */
 } RunVariable;

@@ -18,6 +18,14 @@ check 'a table' prints '^parameter/k .* N/m$'
 run --identify "$work/m.csv" "$spring" "$start" parameter/k -o "$work/b.csv"
 check 'the same bytes again' cmp "$work/a.csv" "$work/b.csv"
 check 'columns' grep -qx 'variable,unit,start,value,deviation,low,high' "$work/a.csv"
+run --identify "$work/m.csv" "$spring" "$start" parameter/k initial/x -o "$work/a.html"
+drawn() { # a diagram with what was measured, a row for each number
+    [ "$(grep -c '<figure>' "$work/a.html")" -eq 1 ] && [ "$(grep -c '<polyline' "$work/a.html")" -eq 2 ] &&
+        [ "$(grep -c '<tr><td>' "$work/a.html")" -eq 2 ] && ! grep -q 'nan\|inf' "$work/a.html"
+}
+check 'a page' drawn
+run --identify "$work/m.csv" "$spring" "$start" 'input/push[1]' -o "$work/a.csv"
+check 'a number of an input' grep -q '^input/push\[1\],N,20,' "$work/a.csv"
 
 # measurements that the model cannot follow: it comes near somewhere, and that is said; those of its own run: nothing is
 run --identify "$work/m.csv" "$spring" "$start" parameter/k
@@ -38,7 +46,8 @@ mistake() { # STATUS TEXT MEASURED WORD...: said, and no file is left
 }
 mistake 2 'needs names of what is looked for' "$work/m.csv" "$spring" "$start"
 mistake 2 "there is no 'parameter/none'" "$work/m.csv" "$spring" "$start" parameter/none
-mistake 2 "does not find 'input/push\[0\]'" "$work/m.csv" "$spring" "$start" 'input/push[0]'
+sed 's/^inputs.*//' "$start" >"$work/free.scene"
+mistake 2 "does not find 'input/push'" "$work/m.csv" "$spring" "$work/free.scene" 'input/push'
 mistake 2 'no scene given' "$work/m.csv" "$spring"
 mistake 2 'does not go with --engine' "$work/m.csv" --engine cc "$spring" "$start" parameter/k
 mistake 1 'No such file' "$work/none.csv" "$spring" "$start" parameter/k

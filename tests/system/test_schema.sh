@@ -14,7 +14,7 @@ fits() {
     /usr/bin/python3 "$root/tests/tools/schema.py" "$work/schema" "$1" >"$work/said" && grep -q '^good' "$work/said"
 }
 
-for model in "$root"/models/*.veh "$root"/models/parts/*.veh "$root"/models/tutorial/*.veh "$root"/models/controllers/*.veh "$root"/tests/data/dump/*.veh "$root"/tests/data/dump/parts/*.veh \
+for model in "$root"/models/*.veh "$root"/models/parts/*.veh "$root"/models/tutorial/*.veh "$root"/models/controllers/*.veh "$root"/models/optimize/*.veh "$root"/tests/data/dump/*.veh "$root"/tests/data/dump/parts/*.veh \
     "$root"/tests/data/laws/*.veh "$root"/tests/data/elements/*.veh "$root"/tests/data/tuning/*.veh "$root"/tests/data/symmetry/*.veh; do
     fits "$model"
     verdict $? "$(cat "$work/said")"

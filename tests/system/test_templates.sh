@@ -14,7 +14,7 @@ cd "$work" || exit 1
 # call TEMPLATE: the run of gicgen that takes this template; none for those of gicrun and gicsweep
 call() {
     case $1 in
-    animate* | drive* | gradient* | kc* | manoeuvre* | sheet* | study* | sweep* | jit.c.in) return 1 ;;
+    animate* | drive* | fit* | gradient* | kc* | manoeuvre* | sheet* | study* | sweep* | jit.c.in) return 1 ;;
     batch*) set -- --batch 4 "$model" -o made.c ;;
     main.c.in) set -- --main "$model" -o made.c ;;
     fmu/*) set -- --fmu 2 "$model" -o made.fmu ;;

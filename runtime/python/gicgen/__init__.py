@@ -226,10 +226,11 @@ class Model:
               axle=None, travel=0.0, loads=False, compare=None, manoeuvre=None, keys=None, trace=None, formula=None,
               measured=None, record=None, inputs=None, port=0, seconds=0.0, vary=None):
         """What gicrun writes: files, and the text that it prints, which is returned. kind: "run", "drive", "eval",
-        "equilibrium", "modes", "linearize", "kc", "sheet", "manoeuvre", "trim", "gradient", "identify" or "live"; others are
-        gicrun's options (page: of --animate, --drive or --report; formula: of --gradient; measured: of --identify; port: of
+        "equilibrium", "modes", "linearize", "kc", "sheet", "manoeuvre", "trim", "gradient", "identify", "optimize" or
+        "live"; others are gicrun's options (page: of --animate, --drive or --report; formula: of --gradient and --optimize; measured: of --identify; port: of
         --live, which needs `seconds`). keys: of a
-        manoeuvre and of steady driving, {name: number}; of "gradient" and "identify", a list of names. vary: of "kc", "sheet" and
+        manoeuvre and of steady driving, {name: number}; of "gradient" and "identify", a list of names, of "optimize" of
+        words name=low:high. vary: of "kc", "sheet" and
         "manoeuvre", {name: (low, high, count)}."""
         words = ([_bytes(f"{name}=" + (value if isinstance(value, str) else repr(_number(value, name))))
                   for name, value in keys.items()] if isinstance(keys, dict) else [_bytes(name) for name in keys or ()])
