@@ -53,6 +53,9 @@ define newline
 
 endef
 
+# of an example: the folder of Ipopt's headers, where it is there
+IPOPT := $(firstword $(foreach folder,coin coin-or,$(patsubst %/IpStdCInterface.h,%,$(wildcard /usr/include/$(folder)/IpStdCInterface.h))))
+
 # folders of `make debug` and its like within this one, which another make may be filling
 other_builds := $(patsubst %,-path $(BUILD)/% -prune -o,debug fuzz coverage)
 
@@ -77,7 +80,7 @@ archive := $(BUILD)/gicgen.a
 plugins := $(if $(MUMPS),$(BUILD)/lib/gicgen/mumps.so) $(if $(HDF5),$(BUILD)/lib/gicgen/hdf5.so) \
     $(if $(SUNDIALS),$(BUILD)/lib/gicgen/bdf.so)
 
-all: $(BUILD)/gicgen $(BUILD)/gicrun $(BUILD)/gicsweep $(BUILD)/gicbench $(plugins) $(BUILD)/libgic.a $(BUILD)/libgic.so $(BUILD)/live_client
+all: $(BUILD)/gicgen $(BUILD)/gicrun $(BUILD)/gicsweep $(BUILD)/gicbench $(plugins) $(BUILD)/libgic.a $(BUILD)/libgic.so $(BUILD)/live_client $(if $(IPOPT),$(BUILD)/gic_ipopt)
 
 $(archive): $(objects)
 	rm -f $@
@@ -98,6 +101,11 @@ $(BUILD)/gicbench: $(BUILD)/runtime/gicbench/gicbench.o $(archive)
 # an example: a client of gicrun --live
 $(BUILD)/live_client: $(BUILD)/runtime/examples/live_client.o
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lm
+
+# an example: Ipopt over the gradients of the library. Its header warns of its own names
+$(BUILD)/runtime/examples/ipopt.o: COMPILE += -isystem $(IPOPT) -Iruntime/host -Wno-deprecated-declarations
+$(BUILD)/gic_ipopt: $(BUILD)/runtime/examples/ipopt.o $(BUILD)/libgic.a
+	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LIBRARIES) -lipopt
 
 # the library: runtime/host/gic.h alone is seen of it. All of the archive that it needs becomes one object
 library := $(patsubst %.c,$(BUILD)/%.o,$(wildcard runtime/library/*.c))
@@ -426,7 +434,7 @@ format-check:
 lint: $(patsubst %.in,$(BUILD)/%,$(wildcard templates/recovery_loop.c.in))
 	shellcheck $(shell find tests runtime .ci -name '*.sh') .ci/run
 	find generator runtime -name '*.c' | xargs -n 8 -P $(shell nproc) sh -c 'clang-tidy --quiet --warnings-as-errors="*" "$$@" \
-	    -- $(STANDARD) -w -Igenerator -Iruntime -I$(BUILD) -DGICBENCH_FLAGS=\"\" 2>/dev/null' sh
+	    -- $(STANDARD) -w -Igenerator -Iruntime -Iruntime/host $(IPOPT:%=-isystem %) -I$(BUILD) -DGICBENCH_FLAGS=\"\" 2>/dev/null' sh
 
 # of generator and runtime, and of the generated code that tests drive directly; the last but two lines say how much. What
 # a signal ends writes no counts.

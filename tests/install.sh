@@ -13,7 +13,7 @@ packages="gcc libc6-dev make libyaml-dev libminizip-dev zlib1g-dev libgsl-dev li
 [ "$1" = test ] && packages="$packages libmumps-headers-dev ^libmumps-seq-5 g++ clang libclang-rt-dev libcmocka-dev \
     graphviz python3-jsonschema python3-h5py python3-numpy python3-scipy python3-yaml gcc-arm-none-eabi libnewlib-arm-none-eabi qemu-system-arm \
     gcc-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user mandoc patch pkgconf tcc chromium libc6-dev-i386 lib32gcc-dev \
-    lld wasi-libc libclang-rt-dev-wasm32 clang-format clang-tidy shellcheck libsundials-dev libxml2-dev libxml2-utils gcc-mingw-w64-x86-64-win32"
+    lld wasi-libc libclang-rt-dev-wasm32 clang-format clang-tidy shellcheck libsundials-dev coinor-libipopt-dev libxml2-dev libxml2-utils gcc-mingw-w64-x86-64-win32"
 
 if ! command -v dpkg-query >/dev/null; then
     echo "This is no Debian system: make sure that it has what these packages hold: $packages" >&2

@@ -421,8 +421,8 @@ typedef struct Signal {
 typedef struct Model {
     const Source *source;
     const char *name, *description;
-    double gravity[3];
-    bool free_base; /* body 0 is the base: the chassis, or ground with mass 0 */
+    double *gravity; /* [3]; copies of a model share it, as tunable numbers are found by their addresses */
+    bool free_base;  /* body 0 is the base: the chassis, or ground with mass 0 */
     int bodies, joints, coordinates, forces, wheels, inputs, outputs, output_components;
     int parameters, tunables, tables, ports, tires, fast_states;
     int states; /* entries of `states`, then what controllers hold */

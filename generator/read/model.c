@@ -107,7 +107,9 @@ static Model *read_model(Pool *pool, const Item *whole)
     Reader reader = {.pool = pool, .model = model};
     const Item *file = file_mirrored(pool, whole);
     Value value[FILE_KEYS];
-    *model = (Model){.source = file->at.source, .gravity = {0, 0, -9.81}, .tuning = tuning_new(pool)};
+    *model =
+        (Model){.source = file->at.source, .gravity = pool_alloc(pool, 3 * sizeof(double)), .tuning = tuning_new(pool)};
+    model->gravity[0] = model->gravity[1] = 0;
     /* read first: any number may be a formula of parameters */
     parameters_read(&reader, doc_find(file, file_key[FILE_PARAMETERS].name));
     tables_read(&reader, doc_find(file, file_key[FILE_TABLES].name));
@@ -115,8 +117,9 @@ static Model *read_model(Pool *pool, const Item *whole)
     model->name = value[FILE_MODEL].text;
     model->description = value[FILE_DESCRIPTION].item ? value[FILE_DESCRIPTION].text : "";
     model_name_check(model->name, value[FILE_MODEL].item->at);
+    model->gravity[2] = -9.81;
     if (value[FILE_GRAVITY].item) {
-        memcpy(model->gravity, value[FILE_GRAVITY].number, sizeof model->gravity);
+        memcpy(model->gravity, value[FILE_GRAVITY].number, 3 * sizeof *model->gravity);
         tuning_set(model->tuning, model->gravity, value[FILE_GRAVITY].tuned, 3);
     }
     points_read(&reader, value[FILE_POINTS].item);

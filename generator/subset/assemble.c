@@ -70,7 +70,6 @@ const Model *model_assemble(Pool *pool, const Model *drawn, const Sequence *sequ
         tuning_copy(model, model->body[b].com, from->com, 3);
         tuning_copy(model, model->body[b].inertia, from->inertia, 6);
     }
-    tuning_copy(model, model->gravity, drawn->gravity, 3);
     double(*origin)[3] = reference_points(pool, drawn, sequence);
     const double(*fixed)[3] = (const double(*)[3])origin;
     Sampling *sampling = sampling_new(pool, drawn, sequence, fixed);

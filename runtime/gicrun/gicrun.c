@@ -17,7 +17,7 @@ static const char usage[] =
     "       gicrun --eval states.csv MODEL.veh [SCENE] [-o results.csv]\n"
     "       gicrun --equilibrium|--modes MODEL.veh [SCENE] [-o results.csv]\n"
     "       gicrun --linearize [--at TIME] MODEL.veh [SCENE] [-o results.csv|.npz|.mat]\n"
-    "       gicrun --gradient FORMULA MODEL.veh SCENE [NAME ...] [-o page.html|gradient.csv]\n"
+    "       gicrun --gradient FORMULA MODEL.veh SCENE [NAME[=VALUE] ...] [-o page.html|gradient.csv]\n"
     "       gicrun --identify measured.csv MODEL.veh SCENE NAME ... [-o page.html|found.csv]\n"
     "       gicrun --optimize FORMULA MODEL.veh SCENE NAME=LOW:HIGH ... [-o page.html|found.csv]\n"
     "       gicrun --trim [--linearize] MODEL.veh [SCENE] key=value ... [-o results.csv|.scene]\n"

@@ -229,6 +229,10 @@ GICL_API int gicl_modes(gicl_library *library, gicl_handle model, const char *sc
  * about the equilibrium. */
 GICL_API int gicl_linearize(gicl_library *library, gicl_handle model, const char *scene, double at, gicl_handle *result,
                             gicl_messages *said);
+/* The gradient of a number of a run, as gicrun --gradient: arrays "number", "time", and by variable "variable" (values)
+ * and "derivative". word: [words] NAME, or NAME=VALUE, which sets the number first; 0: all variables. */
+GICL_API int gicl_gradient(gicl_library *library, gicl_handle model, const char *scene, const char *formula,
+                           const char *const *word, int words, gicl_handle *result, gicl_messages *said);
 
 /* One array of a result, row-major; it stays until the result is closed. */
 typedef struct gicl_array {

@@ -10,6 +10,7 @@
 #include "model/model.h"
 #include "run/choose_step.h"
 #include "run/engines.h"
+#include "run/gradient.h"
 #include "run/linear_model.h"
 #include "run/linearize.h"
 #include "run/run.h"
@@ -25,6 +26,9 @@ typedef struct Work {
     OpenModel *open;
     const char *path; /* of the scene; NULL: none */
     double at;
+    const char *formula; /* of a gradient, and its words */
+    const char *const *word;
+    int words;
     Result *result;
     const Engine *engine; /* that is to be closed; NULL: none */
     RunColumns columns;
@@ -153,6 +157,28 @@ static void find_linear(void *context)
     result_add(result, "time", 1, 1, &m->time, NULL, NULL);
 }
 
+static void find_gradient(void *context)
+{
+    Work *work = context;
+    Pool *pool = work->result->pool;
+    const Solve solve = work->open->options.solve;
+    const Scene *scene;
+    const Model *model = read_scene(work, &scene);
+    const Scalar scalar = scalar_read(pool, model, pool_print(pool, "%s", work->formula));
+    scene = equilibrium_start(pool, model, scene, solve);
+    const Gradient *gradient = gradient_find(pool, &scalar, scene, solve, work->word, work->words);
+    gic_signal *row = pool_alloc(pool, sizeof *row * (size_t)(gradient->variables + 1));
+    double *value = pool_alloc(pool, sizeof *value * (size_t)(gradient->variables + 1));
+    for (int k = 0; k < gradient->variables; ++k) {
+        row[k] = (gic_signal){gradient->variable[k].name, gradient->variable[k].unit};
+        value[k] = gradient->variable[k].value;
+    }
+    result_add(work->result, "number", 1, 1, &gradient->value, NULL, NULL);
+    result_add(work->result, "time", 1, 1, &gradient->time, NULL, NULL);
+    result_add(work->result, "variable", gradient->variables, 1, value, row, NULL);
+    result_add(work->result, "derivative", gradient->variables, 1, gradient->derivative, row, NULL);
+}
+
 /* ---- calls ---------------------------------------------------------------------------------------------------- */
 
 static void add_columns(void *context)
@@ -163,16 +189,16 @@ static void add_columns(void *context)
 }
 
 /* Do it, with a scene if `wanted`. The result is kept where it has arrays. */
-static int analyse(gicl_library *library, gicl_handle model, const char *scene, bool wanted, double at,
-                   void (*kind)(void *context), gicl_handle *result, gicl_messages *said)
+static int analyse_work(gicl_library *library, gicl_handle model, Work work, bool wanted, void (*kind)(void *context),
+                        gicl_handle *result, gicl_messages *said)
 {
     if (result)
         *result = 0;
     const Use use = use_begin(library, model, THING_MODEL, said);
     if (use.status != GICL_OK)
         return use.status;
-    Work work = {.open = use.thing, .path = scene, .at = at};
-    if (!result || (wanted && !scene))
+    work.open = use.thing;
+    if (!result || (wanted && !work.path))
         return use_end(
             &use, call_wrong(said, NULL, "%s must not be NULL", result ? "the scene" : "the place for the handle"));
     int status = call_work(library, said, make_result, &work);
@@ -190,6 +216,12 @@ static int analyse(gicl_library *library, gicl_handle model, const char *scene, 
     if (!*result)
         pool_free(work.result->pool);
     return use_end(&use, status);
+}
+
+static int analyse(gicl_library *library, gicl_handle model, const char *scene, bool wanted, double at,
+                   void (*kind)(void *context), gicl_handle *result, gicl_messages *said)
+{
+    return analyse_work(library, model, (Work){.path = scene, .at = at}, wanted, kind, result, said);
 }
 
 int gicl_run(gicl_library *library, gicl_handle model, const char *scene, gicl_handle *result, gicl_messages *said)
@@ -216,4 +248,15 @@ int gicl_linearize(gicl_library *library, gicl_handle model, const char *scene, 
     if (!isnan(at) && !(at >= 0 && isfinite(at)))
         return call_wrong(said, NULL, "the time must be finite and at least 0, or NaN for rest");
     return analyse(library, model, scene, !isnan(at), at, find_linear, result, said);
+}
+
+int gicl_gradient(gicl_library *library, gicl_handle model, const char *scene, const char *formula,
+                  const char *const *word, int words, gicl_handle *result, gicl_messages *said)
+{
+    if (result)
+        *result = 0;
+    if (!formula || words < 0 || (words && !word))
+        return call_wrong(said, NULL, "the formula must not be NULL, and `word` has `words` words");
+    const Work work = {.path = scene, .at = NAN, .formula = formula, .word = word, .words = words};
+    return analyse_work(library, model, work, true, find_gradient, result, said);
 }

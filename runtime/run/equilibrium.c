@@ -13,6 +13,7 @@
 #include "gic_runtime.h"
 #include "host/gsl_errors.h"
 #include "model/model.h"
+#include "model/tunable.h"
 #include "run/engines.h"
 #include "run/linearize.h"
 #include "run/run.h"
@@ -308,27 +309,27 @@ static const Model *watched(Pool *pool, const Model *model)
 {
     Model *copy = pool_alloc(pool, sizeof *copy);
     *copy = *model;
-    copy->output = NULL;
-    copy->outputs = 0;
+    copy->output =
+        pool_alloc(pool, (size_t)(model->outputs + model->forces + model->wheels + 1) * sizeof *copy->output);
     for (int i = 0; i < model->outputs; ++i)
-        *POOL_PUSH(pool, copy->output, copy->outputs) = model->output[i];
+        output_copy(model, &copy->output[i], &model->output[i]);
     for (int i = 0; i < model->forces; ++i)
         if (!force_is_wrench(&model->force[i])) {
-            *POOL_PUSH(pool, copy->output, copy->outputs) = (Output){.name = model->force[i].name,
-                                                                     .type = OUTPUT_FORCE,
-                                                                     .index = i,
-                                                                     .count = 1,
-                                                                     .component = {""},
-                                                                     .unit = {""}};
+            copy->output[copy->outputs++] = (Output){.name = model->force[i].name,
+                                                     .type = OUTPUT_FORCE,
+                                                     .index = i,
+                                                     .count = 1,
+                                                     .component = {""},
+                                                     .unit = {""}};
             ++copy->output_components;
         }
     for (int i = 0; i < model->wheels; ++i) {
-        *POOL_PUSH(pool, copy->output, copy->outputs) = (Output){.name = model->wheel[i].name,
-                                                                 .type = OUTPUT_WHEEL,
-                                                                 .index = i,
-                                                                 .count = 4,
-                                                                 .component = {"", "", "", ""},
-                                                                 .unit = {"", "", "", ""}};
+        copy->output[copy->outputs++] = (Output){.name = model->wheel[i].name,
+                                                 .type = OUTPUT_WHEEL,
+                                                 .index = i,
+                                                 .count = 4,
+                                                 .component = {"", "", "", ""},
+                                                 .unit = {"", "", "", ""}};
         copy->output_components += 4;
     }
     return copy;

@@ -2,6 +2,7 @@
  * Formulas of a command line as outputs. */
 #include "base/message.h"
 #include "base/yaml.h"
+#include "model/tunable.h"
 #include "run/formula_output.h"
 
 #include <string.h>
@@ -21,7 +22,7 @@ const char *formula_inside(Pool *pool, const char *text, const char *name)
 }
 
 /* The signal of a name: an entry of `signals`, or a component of an output, which becomes one. -1: there is none. */
-static int find_signal(Pool *pool, Model *model, const Model *from, const char *name)
+static int find_signal(Model *model, const Model *from, const char *name)
 {
     for (int i = 0; i < model->signals; ++i)
         if (!strcmp(model->signal[i].name, name))
@@ -33,8 +34,9 @@ static int find_signal(Pool *pool, Model *model, const Model *from, const char *
                 continue;
             if (output->type == OUTPUT_SIGNAL)
                 return output->index;
-            *POOL_PUSH(pool, model->signal, model->signals) =
-                (Signal){.name = name, .unit = output->unit[k], .at = output->at, .output = *output, .component = k};
+            Signal *signal = &model->signal[model->signals++];
+            *signal = (Signal){.name = name, .unit = output->unit[k], .at = output->at, .component = k};
+            output_copy(from, &signal->output, output);
             return model->signals - 1;
         }
     return -1;
@@ -52,7 +54,7 @@ static void find_signals(Pool *pool, Model *model, const Model *from, const Sign
             *POOL_PUSH(pool, known, count) = from->output[i].component[k];
     for (int i = 0; i < reads->count; ++i) {
         const SignalRead *read = &reads->read[i];
-        read->law->index = find_signal(pool, model, from, read->name);
+        read->law->index = find_signal(model, from, read->name);
         read->law->number = 1;
         if (read->law->index < 0)
             law_name_unknown(pool, &read->names, what, read->name, read->at, known, count);
@@ -64,29 +66,30 @@ Model *formula_output(Pool *pool, const Model *from, const char *option, const c
     const char *what = pool_print(pool, "the formula of %s", option);
     Model *model = pool_alloc(pool, sizeof *model);
     *model = *from;
-    model->signal = NULL;
-    model->signals = 0;
-    for (int i = 0; i < from->signals; ++i)
-        *POOL_PUSH(pool, model->signal, model->signals) = from->signal[i];
-    model->output = NULL;
-    model->outputs = 0;
+    /* where they stay: tunable numbers are found by their addresses */
+    model->signal = pool_alloc(pool, (size_t)(from->signals + from->output_components + 1) * sizeof *model->signal);
+    for (int i = 0; i < from->signals; ++i) {
+        model->signal[i] = from->signal[i];
+        output_copy(from, &model->signal[i].output, &from->signal[i].output);
+    }
+    model->output = pool_alloc(pool, ((size_t)from->outputs + 1) * sizeof *model->output);
     for (int i = 0; i < from->outputs; ++i)
-        *POOL_PUSH(pool, model->output, model->outputs) = from->output[i];
+        output_copy(from, &model->output[i], &from->output[i]);
     const Source *source = source_text(pool, option, formula, strlen(formula));
     const Item item = {.kind = ITEM_SCALAR, .at = {source, 1, 1}, .text = formula};
     SignalReads reads = {0};
     const LawNames names = {.model = from, .reads = &reads};
     const Law *law = law_parse(pool, &item, what, &names);
     find_signals(pool, model, from, &reads, what);
-    *POOL_PUSH(pool, model->signal, model->signals) = (Signal){.name = name, .unit = "1", .at = item.at, .law = law};
-    *POOL_PUSH(pool, model->output, model->outputs) = (Output){.name = name,
-                                                               .at = item.at,
-                                                               .type = OUTPUT_SIGNAL,
-                                                               .index = model->signals - 1,
-                                                               .count = 1,
-                                                               .component = {name},
-                                                               .unit = {"1"},
-                                                               .hidden = true};
+    model->signal[model->signals++] = (Signal){.name = name, .unit = "1", .at = item.at, .law = law};
+    model->output[model->outputs++] = (Output){.name = name,
+                                               .at = item.at,
+                                               .type = OUTPUT_SIGNAL,
+                                               .index = model->signals - 1,
+                                               .count = 1,
+                                               .component = {name},
+                                               .unit = {"1"},
+                                               .hidden = true};
     ++model->output_components;
     return model;
 }

@@ -1,8 +1,15 @@
 /* SPDX-License-Identifier: MIT
  * The gradient of a number of a run: its end value, an integral or a maximum. */
 #include "run/gradient.h"
+#include "base/message.h"
 #include "gic_runtime.h"
+#include "host/host.h"
 #include "run/adjoint_run.h"
+#include "run/number_place.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
 
 static void begin(Gradient *gradient)
 {
@@ -81,18 +88,54 @@ static int go_backwards(Gradient *gradient, TangentRun *run, ScalarKind kind, co
     return status == GIC_OK ? adjoint_find(run, weight_of, &sum, &gradient->value, gradient->derivative) : status;
 }
 
+/* The names of words NAME and NAME=VALUE; value: NAN where there is none. */
+static const char **read_words(Pool *pool, const char *const *word, int count, double *value)
+{
+    const char **name = pool_alloc(pool, ((size_t)count + 1) * sizeof *name);
+    for (int i = 0; i < count; ++i) {
+        const char *equals = strchr(word[i], '=');
+        char *end = NULL;
+        name[i] = equals ? pool_print(pool, "%.*s", (int)(equals - word[i]), word[i]) : word[i];
+        value[i] = equals ? strtod(equals + 1, &end) : NAN;
+        if (equals && (end == equals + 1 || *end || !isfinite(value[i])))
+            diag_fail_call(program_place(), "write a number behind it: parameter/k=100",
+                           "'%s' has no number behind the name", word[i]);
+    }
+    return name;
+}
+
+/* The scene with the values of words, and the variables with them. */
+static const Scene *with_values(Pool *pool, const Model *model, const Scene *scene, Gradient *gradient,
+                                const char *const *name, const double *value, int count)
+{
+    Scene *copy = scene_with_numbers(pool, model, scene);
+    RunVariable *variable = pool_alloc(pool, ((size_t)gradient->variables + 1) * sizeof *variable);
+    memcpy(variable, gradient->variable, (size_t)gradient->variables * sizeof *variable);
+    gradient->variable = variable;
+    for (int i = 0; i < count; ++i)
+        for (int k = 0; k < gradient->variables && !isnan(value[i]); ++k)
+            if (!strcmp(name[i], variable[k].name)) {
+                number_places_check(model, copy, &variable[k], 1, "--gradient");
+                *number_place(model, copy, &variable[k]) = variable[k].value = value[i];
+            }
+    return copy;
+}
+
 const Gradient *gradient_find(Pool *pool, const Scalar *scalar, const Scene *scene, Solve solve,
                               const char *const *wanted, int count)
 {
     const int few = 2; /* forwards they take less time */
     const Model *model = scalar->model;
-    TangentRun *run = tangent_open_backwards(pool, model, scene, solve, wanted, count);
+    double *value = pool_alloc(pool, ((size_t)count + 1) * sizeof *value);
+    const char **name = read_words(pool, wanted, count, value);
+    TangentRun *run = tangent_open_backwards(pool, model, scene, solve, name, count);
     Gradient *gradient = pool_alloc(pool, sizeof *gradient);
     *gradient = (Gradient){.variables = 0};
     gradient->variables = tangent_variables(run, &gradient->variable);
     const bool backwards = gradient->variables > few && adjoint_fits(model, scene);
     if (!backwards)
-        run = tangent_open(pool, model, scene, solve, wanted, count);
+        run = tangent_open(pool, model, scene, solve, name, count);
+    scene = with_values(pool, model, scene, gradient, name, value, count);
     const size_t room = (size_t)(gradient->variables + 1) * sizeof(double);
     gradient->derivative = pool_alloc(pool, room);
     const int status = backwards ? go_backwards(gradient, run, scalar->kind, scene)

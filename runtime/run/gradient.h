@@ -34,7 +34,7 @@ typedef struct Gradient {
     double *derivative; /* [variables] */
 } Gradient;
 
-/* wanted, count: as in tangent_open(), which ends the program where it must. */
+/* wanted, count: as in tangent_open(), which ends the program where it must; NAME=VALUE sets the number first. */
 const Gradient *gradient_find(Pool *pool, const Scalar *scalar, const Scene *scene, Solve solve,
                               const char *const *wanted, int count);
 

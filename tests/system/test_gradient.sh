@@ -66,6 +66,8 @@ mistake 1 "controllers hold what they sampled" --gradient chassis.x "$models/for
 mistake 1 "chassis.w" --gradient 'chassis.w' "$car" "$work/short.scene"
 mistake 1 'gradient' --gradient 'chassis.x +' "$car" "$work/short.scene"
 mistake 2 "there is no 'parameter/none'" --gradient chassis.x "$car" "$work/short.scene" parameter/none
+mistake 2 "'parameter/g=x' has no number behind the name" --gradient chassis.z "$root/tests/data/tuning/car.veh" "$work/short.scene" parameter/g=x
+mistake 2 "does not find 'initial/x'" --gradient chassis.x "$car" "$work/short.scene" initial/x=1
 mistake 2 'no scene given' --gradient chassis.x "$car"
 mistake 2 'does not go with --engine' --engine cc --gradient chassis.x "$car" "$work/short.scene"
 mistake 2 'one of --eval' --modes --gradient chassis.x "$car" "$work/short.scene"

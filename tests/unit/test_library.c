@@ -191,6 +191,9 @@ static void test_wrong_calls(void **state)
     assert_int_equal(gicl_batch_new(lib->lib, m, NULL, -5, 1, &other, lib->said), GICL_WRONG);
     assert_int_equal(gicl_run(lib->lib, m, NULL, &result, lib->said), GICL_WRONG);
     assert_int_equal(gicl_linearize(lib->lib, m, NULL, 1, &result, lib->said), GICL_WRONG);
+    assert_int_equal(gicl_gradient(lib->lib, m, NULL, "time", NULL, 0, &result, lib->said), GICL_WRONG);
+    assert_int_equal(gicl_gradient(lib->lib, m, quarter, NULL, NULL, 0, &result, lib->said), GICL_WRONG);
+    assert_int_equal(gicl_gradient(lib->lib, m, quarter, "time", NULL, 1, &result, lib->said), GICL_WRONG);
     assert_int_equal(gicl_restart(lib->lib, car, NAN, lib->said), GICL_WRONG);
     assert_int_equal(gicl_step(lib->lib, car, 0.001, GICL_AB3, 1, -1, lib->said), GICL_WRONG);
     /* by generated code: a step, a method, a state that are no good */

@@ -260,6 +260,23 @@ for i, name in enumerate(name for name in at if name.startswith("parameter/")):
     scene += f"  {name.split('/')[1]}: P{i}P\n"
 check("parameters that are geometric", len(chosen) >= 15)
 taylor("tunable geometry", "chassis.z", car, scene, chosen, 0.02)
+for e in (0, 1):  # all parameters count, those of gravity and of outputs' points too, as they do in a run
+    text = scene
+    for mark, value, unit in chosen.values():
+        text = text.replace(mark, repr(value + e * unit))
+    Path(f"{work}/all.scene").write_text(text)
+    last = gic("-q", "--general", car, f"{work}/all.scene", "-o", "-").splitlines()
+    names = [name.split(" [")[0] for name in last[0].split(",")]
+    for output in ("chassis.z", "wheel_f_l.z"):
+        value = gradient(output, car, f"{work}/all.scene", "initial/z")[0]
+        near(f"tunable geometry: {output} is that of the run", value, float(last[-1].split(",")[names.index(output)]), 1e-11)
+check("gravity counts", abs(gradient("chassis.z", car, f"{work}/all.scene", "parameter/g")[1]["parameter/g"]) > 1e-3)
+check("a value beside a name", gradient("chassis.z", car, f"{work}/all.scene", "parameter/g=9", "initial/z")[0] !=
+      gradient("chassis.z", car, f"{work}/all.scene", "parameter/g", "initial/z")[0])
+for g in (9.0, 10.0):  # by a word as by the scene
+    Path(f"{work}/word.scene").write_text(text.replace(f"g: {chosen['parameter/g'][1] + chosen['parameter/g'][2]!r}", f"g: {g}"))
+    by_word = gradient("chassis.z", car, f"{work}/all.scene", f"parameter/g={g}", "initial/z")
+    check(f"gravity {g} by a word: {by_word}", by_word == gradient("chassis.z", car, f"{work}/word.scene", "parameter/g", "initial/z"))
 
 # ---- backwards and forwards -----------------------------------------------------------------------------------------------------
 
