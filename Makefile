@@ -179,7 +179,7 @@ $(BUILD)/templates/recovery_loop.c: templates/recovery_loop.c.in
 $(BUILD)/runtime/tape/recover.o: $(BUILD)/templates/recovery_loop.c
 
 # the runtime core and the roads go into other people's programs and stay C99
-$(BUILD)/runtime/gic_runtime.o $(BUILD)/runtime/gic_road.o: STANDARD := -std=c99
+$(BUILD)/runtime/gic_runtime.o $(BUILD)/runtime/gic_road.o $(BUILD)/runtime/gic_gradient.o: STANDARD := -std=c99
 
 $(BUILD)/%.o: %.c
 	@mkdir -p $(@D)
@@ -460,7 +460,7 @@ version = $(shell sed -n 's/^.define GICGEN_VERSION "\(.*\)"/\1/p' generator/bas
 export DESTDIR PREFIX
 
 # both number types in one archive: names differ; position-independent, for shared objects may want it
-core := $(foreach part,gic_runtime gic_road,$(BUILD)/install/$(part).double.o $(BUILD)/install/$(part).float.o)
+core := $(foreach part,gic_runtime gic_road gic_gradient,$(BUILD)/install/$(part).double.o $(BUILD)/install/$(part).float.o)
 $(BUILD)/install/%.double.o: runtime/%.c
 	@mkdir -p $(@D)
 	$(COMPILE) -std=c99 -fPIC -c -o $@ $<

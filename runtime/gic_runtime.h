@@ -309,6 +309,19 @@ typedef struct gic_model {
     const gic_implicit *implicit; /* NULL: no implicit steps */
 } gic_model;
 
+/* Derivatives of a model: code of gicgen --derivatives, whose functions these are; `along` is a direction of it. */
+typedef struct gic_derivatives {
+    const gic_model *model;
+    size_t size;     /* of a direction, bytes */
+    int32_t columns; /* of a Jacobian; its rows are states, and with outputs these too */
+    /* offsets of the arrays in a direction, bytes */
+    size_t state_offset, input_offset, parameter_offset, port_offset, rate_offset, output_offset;
+    int (*tangent)(void *self, gic_real time, const gic_real *state, void *along);
+    int (*tangent_outputs)(void *self, void *along);
+    int (*adjoint)(void *self, gic_real time, const gic_real *state, void *along, gic_real *jacobian);
+    int (*adjoint_outputs)(void *self, void *along, gic_real *jacobian);
+} gic_derivatives;
+
 /* With n = slow_count + fast_count: state has n numbers; rate n, at the start of the last step; history
  * GIC_HISTORY(n, fast_count), two past rates, newest first (of dual rate those of the slow states at slow steps, of the
  * fast states at fast steps), and the mean rates of the fast states; scratch GIC_SCRATCH(n, input_count), free between
