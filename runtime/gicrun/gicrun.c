@@ -58,7 +58,8 @@ static const char help[] =
     "      --kc           kinematics of axles over travel and steering, models/KC.md\n"
     "      --axle NAME, --travel M\n"
     "                     of --kc: front, rear or a number from the front; up and down, m (0.08)\n"
-    "      --loads        with --kc: compliance instead\n"
+    "      --loads, --joints\n"
+    "                     with --kc: compliance, or what joints and steering carry, instead\n"
     "      --sheet        the vehicle on a page, models/SHEET.md\n"
     "      --manoeuvre NAME one of models/MANOEUVRES.md; an unknown name lists\n"
     "      --vary NAME=LOW:HIGH:COUNT  of these: parameters, POINT.z, keys\n"
@@ -89,7 +90,7 @@ enum { VARIED_MOST = 16 };
 typedef struct Asked {
     const char *vary[VARIED_MOST]; /* [study.varied] */
     const char *model;
-    bool rests, modes, linear, trim, kinematics, sheet, loads, live, general, quiet;
+    bool rests, modes, linear, trim, kinematics, sheet, loads, joints, live, general, quiet;
     const char *animated, *driven, *report, *optimized; /* --animate, --drive, --report, --optimize */
     double at;                                          /* --at; NAN: not given */
     gicl_options options;
@@ -231,6 +232,7 @@ static Asked read_command_line(int count, char **word)
         {"vary", .read = read_vary},
         {"trace", .text = &study->trace},
         {"loads", .on = &asked.loads},
+        {"joints", .on = &asked.joints},
         {"axle", .text = &study->axle},
         {"travel", .read = read_travel},
         {"report", .text = &asked.report},
@@ -261,20 +263,24 @@ static Asked read_command_line(int count, char **word)
                    "one of --eval, --equilibrium, --modes, --linearize, --trim, --gradient, --identify, --optimize, "
                    "--kc, --sheet and --manoeuvre, please",
                    NULL);
-    if (!asked.kinematics && (study->axle || study->travel > 0 || asked.loads))
-        usage_fail("gicrun", "--axle, --travel and --loads go with --kc", NULL);
+    if (!asked.kinematics && (study->axle || study->travel > 0 || asked.loads || asked.joints))
+        usage_fail("gicrun", "--axle, --travel, --loads and --joints go with --kc", NULL);
     if (asked.report && !asked.kinematics && !study->manoeuvre && !(asked.sheet && study->varied))
         usage_fail("gicrun", "--report goes with --kc, --manoeuvre or --vary", NULL);
     if (study->varied && !asked.kinematics && !study->manoeuvre && !asked.sheet)
         usage_fail("gicrun", "--vary goes with --kc, --sheet or --manoeuvre; scenes are varied by gicsweep", NULL);
-    if (study->varied && (asked.loads || study->compare || study->trace))
-        usage_fail("gicrun", "--vary goes without --loads, --compare and --trace", NULL);
+    if (study->varied && (asked.loads || asked.joints || study->compare || study->trace))
+        usage_fail("gicrun", "--vary goes without --loads, --joints, --compare and --trace", NULL);
     if (study->varied && study->results && path_ends(study->results, ".html"))
         usage_fail("gicrun", "with --vary a page is made by --report, not by -o", study->results);
     if (study->trace && !study->manoeuvre)
         usage_fail("gicrun", "--trace goes with --manoeuvre", NULL);
     if (study->compare && !asked.sheet && !study->manoeuvre && !asked.kinematics)
         usage_fail("gicrun", "--compare goes with --kc, --sheet or --manoeuvre", NULL);
+    if (asked.loads && asked.joints)
+        usage_fail("gicrun", "one of --loads and --joints, please", NULL);
+    if (asked.joints && study->compare && asked.report)
+        usage_fail("gicrun", "--joints --compare is at the position of set-up: it goes without --report", NULL);
     if (asked.loads && (asked.report || study->travel > 0))
         usage_fail("gicrun", "--loads is at the position of set-up: it goes without --travel and --report", NULL);
     if (asked.report && !path_ends(asked.report, ".html"))
@@ -383,6 +389,7 @@ static Asked read_command_line(int count, char **word)
     study->formula = asked.optimized ? asked.optimized : study->formula;
     study->page = asked.animated ? asked.animated : asked.driven ? asked.driven : asked.report;
     study->loads = asked.loads;
+    study->joints = asked.joints;
     study->quiet = asked.quiet;
     asked.options.general = asked.general;
     return asked;

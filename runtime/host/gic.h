@@ -266,7 +266,7 @@ typedef struct gicl_study {
     const double *at;                 /* of "linearize": a time, s */
     const char *axle;                 /* of "kc" */
     double travel;                    /* of "kc", m */
-    int loads;                        /* of "kc": 1: compliance */
+    int loads, joints;                /* of "kc": 1: compliance; 1: what joints carry */
     const char *compare;              /* of "kc", "sheet" and "manoeuvre" */
     const char *manoeuvre;            /* its name */
     const char *formula, *measured;   /* of "gradient" and "optimize"; of "identify": a file */
@@ -280,7 +280,7 @@ typedef struct gicl_study {
     int port;           /* the same: of UDP on the loopback interface; 0: one that is free, which a note tells */
     double seconds; /* the same; 0: until a signal asks to stop, which a listener with `signals` must have left to it */
     const char *const *vary; /* [varied] of "kc", "sheet" and "manoeuvre": words name=low:high:count, without "loads",
-                              * "compare" and "trace" */
+                              * "joints", "compare" and "trace" */
     int varied;
     int quiet; /* 1: neither progress nor notes */
 } gicl_study;

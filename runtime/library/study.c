@@ -101,8 +101,10 @@ static int check_words(const gicl_study *study, Kind kind, bool signals, gicl_me
         return call_wrong(said, "leave it NULL", "'at' goes with linearize and a scene");
     if (study->at && !(*study->at >= 0 && isfinite(*study->at)))
         return call_wrong(said, NULL, "'at' must be finite and at least 0");
-    if ((study->travel != 0 || study->loads) && kind != KC)
-        return call_wrong(said, "leave them 0", "'travel' and 'loads' go with kc");
+    if ((study->travel != 0 || study->loads || study->joints) && kind != KC)
+        return call_wrong(said, "leave them 0", "'travel', 'loads' and 'joints' go with kc");
+    if (study->loads && study->joints)
+        return call_wrong(said, "leave one of them 0", "'loads' and 'joints' are two studies");
     if (study->travel != 0 && !(study->travel > 0 && study->travel <= 10))
         return call_wrong(said, NULL, "'travel' must be above 0 and at most 10 m");
     if ((study->port != 0 || study->seconds != 0) && kind != LIVE)
@@ -124,8 +126,8 @@ static int check_words(const gicl_study *study, Kind kind, bool signals, gicl_me
     if (study->varied < 0 || (study->varied && (!(varying & IN(kind)) || !study->vary)))
         return call_wrong(said, NULL,
                           "'varied' is the number of words in 'vary', which go with kc, sheet and manoeuvre");
-    if (study->varied && (study->loads || study->compare || study->trace))
-        return call_wrong(said, "leave them out", "'vary' goes without 'loads', 'compare' and 'trace'");
+    if (study->varied && (study->loads || study->joints || study->compare || study->trace))
+        return call_wrong(said, "leave them out", "'vary' goes without 'loads', 'joints', 'compare' and 'trace'");
     if (kind == SHEET && study->page && !study->varied)
         return call_wrong(said, "'results' that end in .html are one", "'page' of sheet goes with 'vary'");
     if (study->keys && study->at)
@@ -187,6 +189,7 @@ static Request request_of(const Writing *w)
     return (Request){.scene = s->scene,
                      .states = s->states,
                      .loads = s->loads,
+                     .joints = s->joints,
                      .axle = s->axle,
                      .travel = s->travel,
                      .report = w->kind == KC || w->kind == SHEET || w->kind == MANOEUVRE ? s->page : NULL,

@@ -6,6 +6,7 @@
 #define RUN_KC_H
 
 #include "base/pool.h"
+#include "base/text.h"
 #include "engine/engine.h"
 #include "model/model.h"
 #include "run/linearize.h"
@@ -195,6 +196,7 @@ enum { KC_WHEEL_ROOM = 32, KC_AXLE_ROOM = 24 };
 
 typedef struct KcRow {
     double at;                      /* travel, m, of the left wheels; in steering the coordinate */
+    double *w;                      /* [coordinates] */
     double (*wheel)[KC_WHEEL_ROOM]; /* [wheels]; NAN: has no value here */
     double(*ratio);                 /* [wheels][elements] dx/dz */
     double axle[KC_AXLE_ROOM];
@@ -341,6 +343,10 @@ extern const double kc_usual_travel;
 const KcCurve *kc_first(const KcStudy *study, int axle);
 /* Why a motion is not possible (end 0), or ends before the low or the high end; NULL: it does not. */
 const char *kc_stop(Pool *pool, const KcStudy *study, int axle, KcMotion motion, int end);
+/* Ends in diag_fail where no axle can be moved. */
+void kc_must_move(const Model *model, const KcStudy *study);
+/* Lines for people: what stops, what is not possible, each after `before`. */
+void kc_tell_stops(Text *out, const KcStudy *study, const char *before);
 /* A number as tables show it; "-" where it has no value, "parallel" where it is infinite. */
 const char *kc_shown(Pool *pool, double value, double scale);
 /* The row at set-up that has an axle's quantity; -1: those of its wheels. */

@@ -6,6 +6,7 @@
 #include "gic_runtime.h"
 #include "host/host.h"
 #include "run/kc.h"
+#include "run/kc_joints.h"
 #include "run/sheet.h"
 
 #include <math.h>
@@ -56,7 +57,7 @@ const char *kc_stop(Pool *pool, const KcStudy *study, int axle, KcMotion motion,
                       motion == KC_OPPOSITE ? " on the left" : "", curve->stop[end]);
 }
 
-static void tell_stops(Text *out, const KcStudy *study, const char *before)
+void kc_tell_stops(Text *out, const KcStudy *study, const char *before)
 {
     if (study->kc->units)
         text_print(out, "%s%s\n", before, study->kc->units);
@@ -272,20 +273,29 @@ static void report_loads(Pool *pool, const Model *model, const Scene *scene, con
     diag_text(table.s);
 }
 
+void kc_must_move(const Model *model, const KcStudy *study)
+{
+    bool moves = false;
+    for (int a = 0; a < study->kc->axles; ++a)
+        moves = moves || kc_first(study, a);
+    if (!moves)
+        diag_fail((Place){model->source, 0, 0}, "give its wheels suspensions with coordinates",
+                  "no axle of model '%s' can be moved: %s: %s", model->name, study->kc->axle[0].name,
+                  study->refusal[0][KC_PARALLEL]);
+}
+
 void kc_report(Pool *pool, const Model *model, const Scene *scene, const Request *request)
 {
     if (request->loads) {
         report_loads(pool, model, scene, request);
         return;
     }
+    if (request->joints) {
+        kc_joints_report(pool, model, scene, request);
+        return;
+    }
     const KcStudy study = kc_study(pool, model, scene, request);
-    bool moves = false;
-    for (int a = 0; a < study.kc->axles; ++a)
-        moves = moves || kc_first(&study, a);
-    if (!moves)
-        diag_fail((Place){model->source, 0, 0}, "give its wheels suspensions with coordinates",
-                  "no axle of model '%s' can be moved: %s: %s", model->name, study.kc->axle[0].name,
-                  study.refusal[0][KC_PARALLEL]);
+    kc_must_move(model, &study);
     if (request->compare) {
         const char *name;
         const Model *model_of_other = sheet_other(pool, model, request->compare, &name);
@@ -301,7 +311,7 @@ void kc_report(Pool *pool, const Model *model, const Scene *scene, const Request
         kc_page(pool, &study, request->report);
     Text text = {.pool = pool}, *out = &text;
     if (request->results || request->report) {
-        tell_stops(out, &study, pool_print(pool, "%s: note: ", program_place().source->path));
+        kc_tell_stops(out, &study, pool_print(pool, "%s: note: ", program_place().source->path));
         if (text.s && !request->quiet)
             diag_note(text.s);
         return;
@@ -310,6 +320,6 @@ void kc_report(Pool *pool, const Model *model, const Scene *scene, const Request
     for (int a = 0; a < study.kc->axles; ++a)
         print_axle(out, &study, a);
     text_print(out, "\n");
-    tell_stops(out, &study, "");
+    kc_tell_stops(out, &study, "");
     diag_text(text.s);
 }

@@ -111,6 +111,8 @@ static bool add_row(Way *way, double at, KcCurve *curve)
     KcRow row = {.at = at,
                  .wheel = pool_alloc(way->kc->pool, (size_t)n * sizeof *row.wheel),
                  .ratio = pool_alloc(way->kc->pool, ((size_t)n * (size_t)way->kc->elements + 1) * sizeof *row.ratio)};
+    row.w = pool_alloc(way->kc->pool, bytes(way) + 1);
+    memcpy(row.w, way->w, bytes(way));
     for (int i = 0; i < n; ++i)
         vz[i] = direction(way, i);
     int status = GIC_ERROR_SINGULAR;

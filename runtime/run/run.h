@@ -24,7 +24,7 @@ typedef struct RunColumns {
 typedef struct Request {
     const char *scene;     /* path; NULL: none */
     const char *states;    /* the file of evaluate() */
-    bool loads;            /* of kc_report(): compliance */
+    bool loads, joints;    /* of kc_report(): compliance; what joints carry */
     const char *axle;      /* of kc_report(); NULL: all */
     double travel;         /* the same, m; 0: as usual */
     const char *report;    /* of kc_report() and manoeuvre_report(): a page; NULL: none */

@@ -223,7 +223,7 @@ class Model:
         return Table(data, names, units)
 
     def write(self, kind, scene=None, *, results=None, page=None, plot=None, with_=None, replay=None, states=None, at=None,
-              axle=None, travel=0.0, loads=False, compare=None, manoeuvre=None, keys=None, trace=None, formula=None,
+              axle=None, travel=0.0, loads=False, joints=False, compare=None, manoeuvre=None, keys=None, trace=None, formula=None,
               measured=None, record=None, inputs=None, port=0, seconds=0.0, vary=None):
         """What gicrun writes: files, and the text that it prints, which is returned. kind: "run", "drive", "eval",
         "equilibrium", "modes", "linearize", "kc", "sheet", "manoeuvre", "trim", "gradient", "identify", "optimize" or
@@ -239,7 +239,7 @@ class Model:
                 for name, (low, high, count) in (vary or {}).items()]
         study = _library.Study(ctypes.sizeof(_library.Study), _bytes(kind), _bytes(scene), _bytes(results), _bytes(page),
                                _bytes(plot), _bytes(with_), _bytes(replay), _bytes(states), time, _bytes(axle),
-                               _number(travel, "travel"), bool(loads), _bytes(compare), _bytes(manoeuvre), _bytes(formula),
+                               _number(travel, "travel"), bool(loads), bool(joints), _bytes(compare), _bytes(manoeuvre), _bytes(formula),
                                _bytes(measured),
                                (ctypes.c_char_p * (len(words) + 1))(*words), len(words), _bytes(trace),
                                _bytes(record), _bytes(inputs), _count(port, "port", 0, 65535), _number(seconds, "seconds"),

@@ -28,7 +28,7 @@ class Study(ctypes.Structure):
                 ("results", ctypes.c_char_p), ("page", ctypes.c_char_p), ("plot", ctypes.c_char_p),
                 ("with_", ctypes.c_char_p), ("replay", ctypes.c_char_p), ("states", ctypes.c_char_p),
                 ("at", ctypes.POINTER(ctypes.c_double)), ("axle", ctypes.c_char_p), ("travel", ctypes.c_double),
-                ("loads", ctypes.c_int), ("compare", ctypes.c_char_p), ("manoeuvre", ctypes.c_char_p),
+                ("loads", ctypes.c_int), ("joints", ctypes.c_int), ("compare", ctypes.c_char_p), ("manoeuvre", ctypes.c_char_p),
                 ("formula", ctypes.c_char_p), ("measured", ctypes.c_char_p),
                 ("key", ctypes.POINTER(ctypes.c_char_p)), ("keys", ctypes.c_int), ("trace", ctypes.c_char_p),
                 ("record", ctypes.c_char_p), ("inputs", ctypes.c_char_p), ("port", ctypes.c_int), ("seconds", ctypes.c_double),

@@ -1,0 +1,53 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * kc_joints: what joints of an axle carry, and what holds its steering, over travel and steering (gicrun --kc
+ * --joints), by the definitions of models/KC.md. */
+#ifndef RUN_KC_JOINTS_H
+#define RUN_KC_JOINTS_H
+
+#include "run/kc.h"
+
+/* What makes the forces: springs, stops and formulas with the pads that hold them, N; then loads of kc_load_name in
+ * phase and opposed, by a unit of the load on each wheel. */
+enum { KC_BY_SPRINGS, KC_BY_LOADS, KC_CASES = 1 + 2 * KC_LOADS };
+/* Its load, and whether the right side has the other sign, of one that is not KC_BY_SPRINGS. */
+KcLoad kc_case_load(int by);
+bool kc_case_opposed(int by);
+
+/* On the second body of a joint: force in the axes of the world, torque about the joint's point. along: the tension of
+ * a rod between two points; of the coordinate that steers, in place of the rest, what holds it, along itself. NAN: it
+ * has no such number. */
+typedef struct KcCarried {
+    double force[3], torque[3], along;
+} KcCarried;
+
+typedef struct KcJoints {
+    const Kc *kc;
+    const Model *model;   /* held at its base, all coordinates driven; inputs for elements, ports for wheels */
+    const Engine *engine; /* its outputs: reactions, ends of rods, forces that drive coordinates */
+    const Linear *linear;
+    Instance *self;
+    int element, drive, port; /* the first input of elements, output of drives, port of wheels */
+    int *rod;                 /* [joints] place among outputs of both ends of a rod; -1: it is none */
+    const char **name;        /* [joints] */
+    int joints;
+    double *value;                                /* [outputs] at the place */
+    double *f, *df, *out, *by_element, *by_wheel; /* work */
+} KcJoints;
+
+KcJoints *kc_joints_open(Pool *pool, const Model *model, const Scene *scene, Solve solve, const Kc *kc);
+/* Why nothing is known of the joints of an axle that can be moved; NULL: it is. */
+const char *kc_joints_refusal(const KcAxle *axle);
+/* What joints and the steering of an axle carry at coordinates w: carried [KC_CASES][joints + 1], the last one the
+ * steering. pads: [wheels] forces by springs, N; NULL: not asked for. Cases without a value are NAN. Returns a status.
+ */
+int kc_joints_at(const KcJoints *joints, const KcAxle *axle, const double *w, KcCarried *carried, double *pads);
+/* Does a load reach joint j at a position? */
+bool kc_joint_seen(const KcJoints *joints, const KcCarried *carried, int j);
+/* The name of joint j, or of the axle's steering. */
+const char *kc_joint_name(const KcJoints *joints, const KcAxle *axle, int j);
+/* --kc --joints: a table at set-up, CSV of all positions, a page of curves; or two models beside each other at set-up.
+ */
+void kc_joints_report(Pool *pool, const Model *model, const Scene *scene, const Request *request);
+
+#endif

@@ -1,0 +1,350 @@
+/* SPDX-License-Identifier: MIT
+ * --kc --joints: what joints and the steering carry: a table at the position of set-up, all positions as CSV, curves on
+ * a page, two models beside each other. */
+#include "base/file.h"
+#include "base/text.h"
+#include "base/version.h"
+#include "base/vec3.h"
+#include "emit/emit.h"
+#include "gic_runtime.h"
+#include "host/host.h"
+#include "run/kc_joints.h"
+#include "run/panel.h"
+#include "run/sheet.h"
+
+#include <math.h>
+#include <string.h>
+
+typedef struct Carrying {
+    Pool *pool;
+    const KcStudy *study;
+    const KcJoints *joints;
+    KcCarried *(*at)[KC_MOTIONS]; /* [axles] of [rows][KC_CASES][joints + 1]; NULL: no such motion */
+    bool *seen;                   /* [axles][joints + 1] */
+} Carrying;
+
+/* Cases that tables and pages show, and by how much of the load. The first DRAWN are those of pages. */
+static const struct {
+    int by;
+    const char *title;
+    double size;
+} shown[] = {{KC_BY_SPRINGS, "springs", 1},
+             {KC_BY_LOADS + 2 * KC_VERTICAL, "vertical", 1000},
+             {KC_BY_LOADS + 2 * KC_LATERAL, "lateral", 1000},
+             {KC_BY_LOADS + 2 * KC_LONGITUDINAL, "longitudinal", 1000},
+             {KC_BY_LOADS + 2 * KC_ALIGNING, "aligning", 100},
+             {KC_BY_LOADS + 2 * KC_VERTICAL + 1, "opp. vert.", 1000},
+             {KC_BY_LOADS + 2 * KC_LONGITUDINAL + 1, "opp. long.", 1000},
+             {KC_BY_LOADS + 2 * KC_ALIGNING + 1, "opp. align.", 100}};
+enum { SHOWN = sizeof shown / sizeof *shown, DRAWN = 6 };
+
+static const KcCarried *carried_at(const Carrying *c, int axle, KcMotion motion, int row, int by, int j)
+{
+    return &c->at[axle][motion][((size_t)row * KC_CASES + (size_t)by) * (size_t)(c->joints->joints + 1) + (size_t)j];
+}
+
+/* The tension of a rod, what holds the steering, else how large the force is. */
+static double number_of(const KcCarried *carried)
+{
+    return isnan(carried->along) ? norm3(carried->force) : carried->along;
+}
+
+static bool *seen_of(const Carrying *c, int axle)
+{
+    return c->seen + axle * (c->joints->joints + 1);
+}
+
+/* The motion whose row at set-up tables show; false: the axle can't be moved. */
+static bool usual(const Carrying *c, int axle, KcMotion *motion, int *row)
+{
+    for (KcMotion m = 0; m < KC_MOTIONS; ++m)
+        if (c->at[axle][m]) {
+            *motion = m;
+            *row = c->study->curve[axle][m]->zero;
+            return true;
+        }
+    return false;
+}
+
+static void find_all(Carrying *c, const Kc *kc)
+{
+    const KcJoints *k = c->joints;
+    const size_t size = (size_t)KC_CASES * (size_t)(k->joints + 1);
+    c->at = pool_alloc(c->pool, (size_t)kc->axles * sizeof *c->at);
+    c->seen = pool_alloc(c->pool, (size_t)kc->axles * (size_t)(k->joints + 1) * sizeof *c->seen);
+    for (int a = 0; a < kc->axles; ++a)
+        for (KcMotion m = 0; m < KC_MOTIONS; ++m) {
+            const KcCurve *curve = kc_joints_refusal(&kc->axle[a]) ? NULL : c->study->curve[a][m];
+            c->at[a][m] = curve ? pool_alloc(c->pool, (size_t)curve->rows * size * sizeof(KcCarried)) : NULL;
+            for (int r = 0; curve && r < curve->rows; ++r) {
+                KcCarried *to = c->at[a][m] + (size_t)r * size;
+                const int status = kc_joints_at(k, &kc->axle[a], curve->row[r].w, to, NULL);
+                if (status != GIC_OK)
+                    diag_fail((Place){kc->model->source, 0, 0}, NULL, "axle %s, %s: %s", kc->axle[a].name,
+                              kc_motion_name[m], instance_status(c->pool, k->engine->code, &k->self->head, status));
+                for (int j = 0; j <= k->joints; ++j)
+                    seen_of(c, a)[j] = seen_of(c, a)[j] || kc_joint_seen(k, to, j);
+            }
+        }
+}
+
+static Carrying open_all(Pool *pool, const Model *model, const Scene *scene, const Request *request,
+                         const KcStudy *study)
+{
+    Carrying c = {.pool = pool, .study = study};
+    KcMotion motion;
+    int row;
+    c.joints = kc_joints_open(pool, model, scene, request->solve, study->kc);
+    find_all(&c, study->kc);
+    for (int a = 0; a < study->kc->axles; ++a)
+        if (usual(&c, a, &motion, &row))
+            return c;
+    diag_fail((Place){model->source, 0, 0}, "name an axle whose joints hold its wheels",
+              "no axle of model '%s' has joints whose loads are known: %s: %s", model->name, study->kc->axle[0].name,
+              kc_joints_refusal(&study->kc->axle[0]));
+}
+
+/* ---- a table -------------------------------------------------------------------------------------------- */
+
+static void print_axle(Text *out, const Carrying *c, int a)
+{
+    const KcAxle *axle = &c->study->kc->axle[a];
+    KcMotion motion;
+    int row;
+    text_print(out, "\n%s\n", axle->name);
+    if (kc_joints_refusal(axle))
+        text_print(out, "  not there: %s\n", kc_joints_refusal(axle));
+    if (!usual(c, a, &motion, &row))
+        return;
+    text_print(out, "  %-18s", "N; steering N, N m");
+    for (int i = 0; i < SHOWN; ++i)
+        text_print(out, " %12s", shown[i].title);
+    for (int j = 0; j <= c->joints->joints; ++j) {
+        if (!seen_of(c, a)[j])
+            continue;
+        text_print(out, "\n  %-18s", kc_joint_name(c->joints, axle, j));
+        for (int i = 0; i < SHOWN; ++i)
+            text_print(out, " %12s",
+                       kc_shown(out->pool, number_of(carried_at(c, a, motion, row, shown[i].by, j)), shown[i].size));
+    }
+    text_print(out, "\n");
+}
+
+/* ---- CSV ------------------------------------------------------------------------------------------------ */
+
+static const char *const component[6] = {"force.x", "force.y", "force.z", "torque.x", "torque.y", "torque.z"};
+
+/* Does any axle load a joint? */
+static bool seen_anywhere(const Carrying *c, int j)
+{
+    for (int a = 0; a < c->study->kc->axles; ++a)
+        if (seen_of(c, a)[j])
+            return true;
+    return false;
+}
+
+static void cell(Csv *csv, double value)
+{
+    if (isnan(value))
+        csv_text(csv, NULL);
+    else
+        csv_number(csv, value + 0.0);
+}
+
+static void write_row(Csv *csv, const Carrying *c, int a, KcMotion m, int r, int by)
+{
+    const Kc *kc = c->study->kc;
+    const KcAxle *axle = &kc->axle[a];
+    const KcRow *row = &c->study->curve[a][m]->row[r];
+    const KcLoad load = by < KC_BY_LOADS ? KC_LOADS : kc_case_load(by);
+    csv_name(csv, axle->name, NULL);
+    csv_name(csv, kc_motion_name[m], NULL);
+    cell(csv, m == KC_STEER ? 0 : row->at);
+    cell(csv, axle->steer >= 0 ? row->w[axle->steer] : NAN);
+    csv_name(csv, load < KC_LOADS ? kc_load_name[load] : "springs", NULL);
+    csv_number(csv, load < KC_LOADS && kc_case_opposed(by));
+    csv_name(csv, load == KC_LOADS ? "1" : load == KC_ALIGNING ? "N m" : "N", NULL);
+    cell(csv, carried_at(c, a, m, r, by, c->joints->joints)->along);
+    for (int j = 0; j < c->joints->joints; ++j) {
+        const KcCarried *at = carried_at(c, a, m, r, by, j);
+        if (!seen_anywhere(c, j))
+            continue;
+        for (int i = 0; i < 6; ++i)
+            cell(csv, !seen_of(c, a)[j] ? NAN : i < 3 ? at->force[i] : at->torque[i - 3]);
+        if (c->joints->rod[j] >= 0)
+            cell(csv, seen_of(c, a)[j] ? at->along : NAN);
+    }
+    csv_end_row(csv);
+}
+
+static void write_csv(const Carrying *c, const char *path)
+{
+    static const char *const first[] = {"axle", "motion", "travel", "steering", "load", "opposed", "unit", "holds"};
+    const Kc *kc = c->study->kc;
+    interrupt_hold();
+    Csv csv = csv_open(c->pool, path);
+    for (size_t i = 0; i < sizeof first / sizeof *first; ++i)
+        csv_name(&csv, first[i], NULL);
+    for (int j = 0; j < c->joints->joints; ++j) {
+        if (!seen_anywhere(c, j))
+            continue;
+        for (int i = 0; i < 6; ++i)
+            csv_name(&csv, pool_print(c->pool, "%s.%s", c->joints->name[j], component[i]), NULL);
+        if (c->joints->rod[j] >= 0)
+            csv_name(&csv, pool_print(c->pool, "%s.tension", c->joints->name[j]), NULL);
+    }
+    csv_end_row(&csv);
+    for (int a = 0; a < kc->axles; ++a)
+        for (KcMotion m = 0; m < KC_MOTIONS; ++m)
+            for (int r = 0; c->at[a][m] && r < c->study->curve[a][m]->rows; ++r)
+                for (int by = 0; by < KC_CASES; ++by)
+                    write_row(&csv, c, a, m, r, by);
+    csv_close(&csv);
+    interrupt_release();
+}
+
+/* ---- numbers with names --------------------------------------------------------------------------------- */
+
+/* Of number_of() by a unit of the load: N, or N m of a steering that turns; by N m of an aligning load. */
+static const char *unit_of(const Carrying *c, const KcAxle *axle, int j, int by)
+{
+    static const char *const unit[2][3] = {{"N", "1", "1/m"}, {"N m", "m", "1"}};
+    const bool turns = j == c->joints->joints && c->study->kc->model->coordinate[axle->steer].type == COORDINATE_ANGLE;
+    return unit[turns][by < KC_BY_LOADS ? 0 : kc_case_load(by) == KC_ALIGNING ? 2 : 1];
+}
+
+static Sheet sheet_of(const Carrying *c, const Model *model)
+{
+    Sheet sheet = {.pool = c->pool, .model = model};
+    for (int a = 0; a < c->study->kc->axles; ++a) {
+        const KcAxle *axle = &c->study->kc->axle[a];
+        const char *section = pool_print(c->pool, "Axle: %s", axle->name);
+        KcMotion motion;
+        int row;
+        if (!usual(c, a, &motion, &row))
+            continue;
+        for (int j = 0; j <= c->joints->joints; ++j)
+            for (int by = 0; by < KC_CASES && seen_of(c, a)[j]; ++by) {
+                const KcCarried *at = carried_at(c, a, motion, row, by, j);
+                const bool loaded = by >= KC_BY_LOADS;
+                const char *name = kc_joint_name(c->joints, axle, j);
+                const char *load = loaded ? kc_load_name[kc_case_load(by)] : "springs";
+                const char *opposed = loaded && kc_case_opposed(by) ? "opposed" : "";
+                if (isnan(number_of(at)))
+                    continue;
+                sheet_add(&sheet, section,
+                          pool_print(c->pool, "%s.%s.%s%s%s", axle->name, name, load, *opposed ? "." : "", opposed),
+                          pool_print(c->pool, "%s: %s%s%s", name, load, *opposed ? ", " : "", opposed),
+                          unit_of(c, axle, j, by), number_of(at));
+                section = NULL;
+            }
+    }
+    return sheet;
+}
+
+/* ---- the page ------------------------------------------------------------------------------------------- */
+
+static void draw_motion(Text *out, const Carrying *c, int a, const KcCurve *of)
+{
+    const Kc *kc = c->study->kc;
+    const KcAxle *axle = &kc->axle[a];
+    double scale, *x = pool_alloc(c->pool, (size_t)of->rows * sizeof *x);
+    double *y = pool_alloc(c->pool, (size_t)of->rows * DRAWN * sizeof *y);
+    Panel panel = {.unit = "N", .rows = of->rows, .curves = DRAWN, .x = x, .y = y};
+    panel.below = kc_abscissa(c->pool, kc, axle, of->motion, &scale);
+    text_print(out, "<h3>%s", kc_motion_title[of->motion]);
+    for (int i = 0; i < DRAWN; ++i)
+        text_print(out, " <span style=\"color:%s\">%s%s</span>", panel_color(i),
+                   i == 1 ? "&#9476;&#9476; " : "&#8212; ", shown[i].title);
+    text_print(out, "</h3>\n<div class=\"curves\">\n");
+    for (int j = 0; j <= c->joints->joints; ++j) {
+        if (!seen_of(c, a)[j])
+            continue;
+        for (int r = 0; r < of->rows; ++r) {
+            x[r] = of->row[r].at * scale;
+            for (int i = 0; i < DRAWN; ++i)
+                y[i * of->rows + r] = number_of(carried_at(c, a, of->motion, r, shown[i].by, j)) * shown[i].size;
+        }
+        panel.title = kc_joint_name(c->joints, axle, j);
+        if (j == c->joints->joints && kc->model->coordinate[axle->steer].type == COORDINATE_ANGLE)
+            panel.unit = "N m";
+        panel_draw(out, &panel);
+    }
+    text_print(out, "</div>\n");
+}
+
+static void write_axles(void *context, Text *out, int indent)
+{
+    const Carrying *c = context;
+    (void)indent;
+    kc_stops_html(out, c->study, NULL);
+    for (int a = 0; a < c->study->kc->axles; ++a) {
+        text_print(out, "<h2>Axle: %s</h2>\n", c->study->kc->axle[a].name);
+        if (kc_joints_refusal(&c->study->kc->axle[a]))
+            text_print(out, "<p class=\"stop\">not there: %s</p>\n", kc_joints_refusal(&c->study->kc->axle[a]));
+        for (KcMotion m = 0; m < KC_MOTIONS; ++m)
+            if (c->at[a][m])
+                draw_motion(out, c, a, c->study->curve[a][m]);
+    }
+}
+
+static void write_identity(void *context, Text *out, int indent)
+{
+    const Carrying *c = context;
+    (void)indent;
+    text_print(out, "<p>");
+    text_html(out, c->study->kc->model->name);
+    text_print(out,
+               ": what joints and steering carry, by springs and by 1 kN or 100 N m a wheel. gicgen " GICGEN_VERSION
+               ".</p>\n");
+}
+
+static const Insertion points[] = {{"identity", write_identity}, {"axles", write_axles}, {NULL, NULL}};
+static const Insertions page_points = {(const char *const[]){"kc.html.in", NULL}, points, NULL};
+
+static void write_page(Carrying *c, const char *path)
+{
+    Text out = {.pool = c->pool};
+    templates_check(c->pool, NULL, (const Insertions *const[]){&page_points, NULL});
+    template_expand(c->pool, &out, NULL, "kc.html.in", c->study->kc->model->name, NULL, &page_points, c);
+    file_write(path, out.s, out.size);
+}
+
+void kc_joints_report(Pool *pool, const Model *model, const Scene *scene, const Request *request)
+{
+    const KcStudy study = kc_study(pool, model, scene, request);
+    kc_must_move(model, &study);
+    Carrying c = open_all(pool, model, scene, request, &study);
+    if (request->compare) {
+        const char *name;
+        const Model *model_of_other = sheet_other(pool, model, request->compare, &name);
+        const KcStudy study_of_other = kc_study(pool, model_of_other, NULL, request);
+        const Carrying other = open_all(pool, model_of_other, NULL, request, &study_of_other);
+        Sheet sheet = sheet_of(&c, model);
+        const Sheet beside = sheet_of(&other, model_of_other);
+        sheet_compare(&sheet, &beside, name);
+        if (request->results)
+            sheet_csv(&sheet, request->results);
+        else
+            sheet_print(&sheet, ": joints, models/KC.md defines it");
+        return;
+    }
+    if (request->results)
+        write_csv(&c, request->results);
+    if (request->report)
+        write_page(&c, request->report);
+    Text text = {.pool = pool}, *out = &text;
+    if (request->results || request->report) {
+        kc_tell_stops(out, &study, pool_print(pool, "%s: note: ", program_place().source->path));
+        if (text.s && !request->quiet)
+            diag_note(text.s);
+        return;
+    }
+    text_print(out, "what joints of %s carry, by springs and by 1 kN or 100 N m a wheel; models/KC.md defines it\n",
+               model->name);
+    for (int a = 0; a < study.kc->axles; ++a)
+        print_axle(out, &c, a);
+    text_print(out, "\n");
+    kc_tell_stops(out, &study, "");
+    diag_text(text.s);
+}

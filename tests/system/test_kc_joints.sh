@@ -1,0 +1,53 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# test_kc_joints.sh GICGEN GICRUN: what joints and the steering carry, `gicrun --kc --joints`. Axles against the equilibrium
+# of all bodies by themselves, an upright from hard points, levers in nice numbers (tests/vehicle/joints.py); axles that
+# have no such numbers; the page; two models.
+gicgen=$1
+gicrun=$2
+root=$(cd "$(dirname "$0")/../.." && pwd)
+# shellcheck source=tests/lib/checking.sh
+. "$root/tests/lib/checking.sh"
+models=$root/models
+/usr/bin/python3 -B "$root/tests/vehicle/joints.py" "$gicgen" "$gicrun" "$models" "$work" >"$work/said" 2>&1
+verdict $? 'the equilibrium of all bodies'
+
+# the pads are those of --kc, what hangs on them is there: of a single arm without springs beside it 1 kN is 1 kN
+run --kc --joints --axle rear "$models/trailing_arm.veh"
+check 'a table' exits 0
+check 'the hinge of a trailing arm takes what its pad gives' prints 'arm_r_l  *[0-9.]*  *1000.0000  *1000.0000'
+check 'what stops it is told' prints 'rear, steer: not possible'
+run --kc --joints "$models/motorcycle.veh"
+check 'one wheel behind the other' exits 0
+run --kc --joints "$models/semitrailer.veh" --axle axle_3 -q -o "$work/truck.csv"
+check 'dual wheels' exits 0
+check 'other axles are left out' sh -c "head -1 '$work/truck.csv' | grep -q 'drive_2_low_l' && ! head -1 '$work/truck.csv' | grep -q drive_1"
+
+run --kc --joints "$models/hatchback.veh" -o "$work/rubber.csv"
+check 'an axle on rubber' exits 1
+check 'it is named' says 'front: its wheels hang on rubber'
+check 'no file' [ ! -e "$work/rubber.csv" ]
+run --kc --joints "$models/pendulum.veh"
+check 'no wheels' exits 1
+for words in '--kc --loads --joints' '--joints' '--sheet --joints' '--kc --joints --vary x=1:2:2'; do
+    # shellcheck disable=SC2086 # words
+    run $words "$models/hmmwv.veh"
+    check "$words" exits 2
+done
+
+run --kc --joints --axle front "$models/formula_student.veh" -q --report "$work/a.html" -o "$work/a.csv"
+check 'the page' exits 0
+run --kc --joints --axle front "$models/formula_student.veh" -q --report "$work/b.html"
+check 'the same page again' cmp "$work/a.html" "$work/b.html"
+check 'no curve has something else than numbers' sh -c "! grep -qiE '[^a-z](nan|inf)[^a-z]' '$work/a.html' '$work/a.csv'"
+check 'curves' [ "$(grep -c '<polyline' "$work/a.html")" -gt 150 ]
+check 'the rod is there' grep -q 'front_link_l, N' "$work/a.html"
+check 'and the torque that steers' grep -q 'steering, N m' "$work/a.html"
+
+run --kc --joints --axle front --compare "$models/hmmwv.veh" "$models/hmmwv.veh"
+check 'a vehicle beside itself' sh -c "grep -q 'tierod_f_l: lateral' '$work/out' && ! grep -q '\*$' '$work/out'"
+run --kc --joints --axle front --compare "$models/hmmwv14.veh" "$models/hmmwv.veh" -o "$work/both.csv"
+check 'two vehicles' grep -q '^front.rack.aligning,[0-9.e+-]*,1/m,[0-9.e+-]*,' "$work/both.csv"
+
+echo "$passed passed, $failed failed"
+[ "$failed" -eq 0 ] && [ "$passed" -ge 24 ]
