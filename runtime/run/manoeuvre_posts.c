@@ -15,7 +15,8 @@ static const double pi = 3.141592653589793;
 static const double begin = 4, rest = 4; /* s at rest before a sweep and after it */
 static const double first = 0.5;         /* Hz, where it begins; it ends 15 % above the highest that is asked for */
 static const double above = 1.15;
-static const double sweep = 40;                       /* s */
+static const double sweep = 40;        /* s */
+static const double near = 4, far = 8; /* s around where a frequency passes that count whole, beyond which none do */
 static const double table[] = {1, 2, 5, 10, 15, 20};  /* Hz in the table */
 enum { BESIDE = 1, CURVE = 60 };                      /* lines of the spectrum to each side; points of a curve */
 enum { SPEED, CLASS, DURATION, SEED, AMPLITUDE, TO }; /* keys */
@@ -139,6 +140,20 @@ static double number_of(const Trial *trial, const PostMotion *motion, int wheels
     return of[w * TRIAL_OF_WHEEL + TRIAL_WHEEL_ROAD];
 }
 
+/* When the sweep has a frequency, s. */
+static double passes(const Manoeuvre *m, double frequency)
+{
+    return begin + sweep * log(frequency / first) / log(above * m->value[TO] / first);
+}
+
+/* The weight of a time about when a frequency passes: a vehicle that settles meanwhile, as one does on its brakes, is
+ * elsewhere at the end, which would count at all frequencies. Tapers are half periods of a cosine. */
+static double weight_at(double t, double at)
+{
+    const double last = fmin(far, begin + sweep + rest - at), away = fabs(t - at), ends = t < at ? far : last;
+    return away <= near ? 1 : away >= ends ? 0 : 0.5 + 0.5 * cos(pi * (away - near) / (ends - near));
+}
+
 /* H = sum X* Y / sum X* X over lines 1 / T beside a frequency, T the length of the record; [wheels + 2]. */
 static void by_sweep(const Manoeuvre *m, const PostMotion *motion, const Trial *trial, const double *still,
                      double frequency, Response *out)
@@ -151,11 +166,12 @@ static void by_sweep(const Manoeuvre *m, const PostMotion *motion, const Trial *
         const double omega = 2 * pi * (frequency + k / (sweep + rest));
         memset(sum, 0, sizeof sum);
         for (int i = 0; i < trial->rows; ++i) {
-            const double t = trial->row[i][TRIAL_TIME], c = cos(omega * t), s = sin(omega * t);
-            if (t < begin)
+            const double t = trial->row[i][TRIAL_TIME], weight = weight_at(t, passes(m, frequency));
+            if (weight == 0)
                 continue;
+            const double c = cos(omega * t), s = sin(omega * t);
             for (int n = 0; n < numbers; ++n) {
-                const double y = number_of(trial, motion, wheels, i, n) - still[n];
+                const double y = weight * (number_of(trial, motion, wheels, i, n) - still[n]);
                 sum[n][0] += y * c;
                 sum[n][1] -= y * s;
             }

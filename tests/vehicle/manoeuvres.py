@@ -586,8 +586,10 @@ for motion, sign in signs.items():
     straight = (time >= 3) & (time <= 4)
     still = trace[channel][straight].mean()
     xx = xy = 0
+    at = 4 + 40 * np.log(5 / 0.5) / np.log(1.15 * 20 / 0.5)
+    taper = np.clip((np.abs(time - at) - 4) / 4, 0, 1)  # whole within 4 s of 5 Hz, nothing from 8 s on
     for k in (-1, 0, 1):
-        turn = np.exp(-2j * np.pi * (5 + k / 44) * time) * (time >= 4)
+        turn = np.exp(-2j * np.pi * (5 + k / 44) * time) * (1 + np.cos(np.pi * taper)) / 2
         x, y = np.sum(heights[0] * turn), np.sum((trace[channel] - still) * turn)
         xx, xy = xx + abs(x) ** 2, xy + np.conj(x) * y
     found = abs(xy / xx) / ((2 * np.pi * 5) ** 2 if motion == "heave" else 1)
