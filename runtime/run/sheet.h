@@ -83,6 +83,10 @@ void sheet_report(Pool *pool, const Model *model, const Scene *scene, const Requ
 /* sheet_compare.c: what is to stand beside a model: another one's file, or a scene, which has other values of its
  * parameters. *name: what it is called. */
 const Model *sheet_other(Pool *pool, const Model *model, const char *file, const char **name);
+/* The same file: the model with the values of its parameters that a scene gives; itself where they are its own. */
+const Model *sheet_set(Pool *pool, const Model *model, const Scene *scene);
+/* The same file: what a wheel of an axle is called in any vehicle: front.left_1. */
+const char *sheet_place_of(Pool *pool, const KcAxle *axle, int wheel);
 /* The same file: numbers of another one, which is called `name`, beside those of the same places or names; then those
  * that only the other one has. */
 void sheet_compare(Sheet *sheet, const Sheet *other, const char *name);
@@ -93,6 +97,17 @@ void sheet_notes(const Sheet *sheet, const Request *request);
 void sheet_csv(const Sheet *sheet, const char *path);
 /* sheet_compare.c: true if a number is another one for the other vehicle, or not there: by more than rounding. */
 bool sheet_differs(const SheetRow *row);
+/* Points in the world: the corners of the base's box, centres of wheels; and how they move by the real and by the
+ * imaginary part of a mode. */
+enum { SHEET_CORNERS = 8 };
+typedef struct SheetShape {
+    int points;
+    double (*rest)[3], (*move[2])[3];
+} SheetShape;
+/* sheet_shapes.c. False: it could not be found. */
+bool sheet_shape_of(const Sheet *sheet, const Mode *mode, SheetShape *shape);
+/* sheet_match.c: modes of the same shape in both sheets get the same place, and a note where their numbers differ. */
+void sheet_match_modes(Sheet *sheet, Sheet *other);
 /* sheet_shapes.c: a mode's motion as seen from the side and from behind, as SVG; nothing where it can't be found. */
 void sheet_shape(const Sheet *sheet, const Mode *mode, Text *out);
 /* sheet_page.c: the sections but that of the modes as tables; the page. */

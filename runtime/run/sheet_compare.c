@@ -17,6 +17,20 @@ static const char *last_of(const char *path)
     return slash ? slash + 1 : path;
 }
 
+const Model *sheet_set(Pool *pool, const Model *model, const Scene *scene)
+{
+    FileNumber *setting = pool_alloc(pool, ((size_t)model->parameters + 1) * sizeof *setting);
+    int settings = 0;
+    bool differs = false;
+    for (int i = 0; i < model->parameters; ++i)
+        if (model->parameter[i].tunable) {
+            const double value = scene->parameter[model->parameter[i].index];
+            differs = differs || value != model->parameter[i].value;
+            setting[settings++] = (FileNumber){model->parameter[i].name, value};
+        }
+    return differs ? model_read_set(pool, model, setting, settings) : model;
+}
+
 const Model *sheet_other(Pool *pool, const Model *model, const char *file, const char **name)
 {
     const Model *other;
@@ -27,22 +41,22 @@ const Model *sheet_other(Pool *pool, const Model *model, const char *file, const
     }
     other = model_read_again(pool, model); /* not as another scene has set it */
     const Scene *scene = scene_read(pool, file, other, NULL, 0);
-    FileNumber *setting = pool_alloc(pool, ((size_t)other->parameters + 1) * sizeof *setting);
-    int settings = 0;
-    for (int i = 0; i < other->parameters; ++i)
-        if (other->parameter[i].tunable)
-            setting[settings++] = (FileNumber){other->parameter[i].name, scene->parameter[other->parameter[i].index]};
     *name = pool_print(pool, "%s with %s", other->name, last_of(file));
-    return model_read_set(pool, other, setting, settings);
+    return sheet_set(pool, other, scene);
 }
 
-void sheet_place(Sheet *sheet, const KcAxle *axle, int wheel, const char *what)
+const char *sheet_place_of(Pool *pool, const KcAxle *axle, int wheel)
 {
     int number = 1;
     for (int i = 0; i < wheel; ++i)
         number += axle->wheel[i].side == axle->wheel[wheel].side;
-    sheet->row[sheet->rows - 1].place = pool_print(sheet->pool, "%s.%s_%d.%s", axle->name,
-                                                   axle->wheel[wheel].side > 0 ? "left" : "right", number, what);
+    return pool_print(pool, "%s.%s_%d", axle->name, axle->wheel[wheel].side > 0 ? "left" : "right", number);
+}
+
+void sheet_place(Sheet *sheet, const KcAxle *axle, int wheel, const char *what)
+{
+    sheet->row[sheet->rows - 1].place =
+        pool_print(sheet->pool, "%s.%s", sheet_place_of(sheet->pool, axle, wheel), what);
 }
 
 bool sheet_differs(const SheetRow *row)

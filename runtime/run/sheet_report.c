@@ -203,7 +203,7 @@ Sheet sheet_study(Pool *pool, const Model *model, const Scene *scene, const Requ
     add_modes(&sheet);
     sheet_cornering(&sheet);
     if (fabs(fabs(model->body[BODY_BASE].euler[0]) - 1) <= equilibrium_limit)
-        add_top_speed(&sheet, model, request);
+        add_top_speed(&sheet, scene ? sheet_set(pool, model, scene) : model, request);
     else
         sheet_miss(&sheet, "top speed: the axes of the base are not those of the drawing");
     return sheet;
@@ -214,7 +214,8 @@ void sheet_report(Pool *pool, const Model *model, const Scene *scene, const Requ
     Sheet sheet = sheet_study(pool, model, scene, request);
     if (request->compare) {
         const char *name;
-        const Sheet other = sheet_study(pool, sheet_other(pool, model, request->compare, &name), NULL, request);
+        Sheet other = sheet_study(pool, sheet_other(pool, model, request->compare, &name), NULL, request);
+        sheet_match_modes(&sheet, &other);
         sheet_compare(&sheet, &other, name);
     }
     if (request->results && path_ends(request->results, ".html"))

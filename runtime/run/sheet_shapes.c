@@ -9,17 +9,11 @@
 #include <math.h>
 #include <string.h>
 
-enum { CORNERS = 8, PHASES = 16, WIDE = 150, TALL = 70 };
+enum { CORNERS = SHEET_CORNERS, PHASES = 16, WIDE = 150, TALL = 70 };
 
 static const double pi = 3.141592653589793;
 static const double largest = 0.12; /* displacement over wheelbase, or over the track of a single axle */
 static const double small = 1e-5;   /* of the eigenvector, for its displacements: pictures only */
-
-/* Points in the world: the corners of the base's box, centres of wheels. */
-typedef struct Shape {
-    int points;
-    double (*rest)[3], (*move[2])[3]; /* move: by the real and the imaginary part */
-} Shape;
 
 /* Corners of a box over the wheels' centres at design, in the frame of the base's body. */
 static void box(const Sheet *sheet, double corner[CORNERS][3])
@@ -68,8 +62,7 @@ static int places(const Sheet *sheet, Instance *self, double (*out)[3])
     return GIC_OK;
 }
 
-/* False: it could not be found. */
-static bool shape_of(const Sheet *sheet, const Mode *mode, Shape *shape)
+bool sheet_shape_of(const Sheet *sheet, const Mode *mode, SheetShape *shape)
 {
     const Linear *linear = sheet->found->linear;
     const gic_model *code = sheet->found->engine->code;
@@ -97,7 +90,7 @@ static bool shape_of(const Sheet *sheet, const Mode *mode, Shape *shape)
 
 /* A point in a phase, as a view from the side (axis 0) or from behind (axis 1) shows it. */
 typedef struct View {
-    const Shape *shape;
+    const SheetShape *shape;
     int axis;
     double scale, grow, middle, ground;
 } View;
@@ -147,8 +140,8 @@ void sheet_shape(const Sheet *sheet, const Mode *mode, Text *out)
 {
     static const int outline[2][4] = {{0, 1, 5, 4}, {0, 2, 6, 4}};
     const Model *model = sheet->model;
-    Shape shape;
-    if (!shape_of(sheet, mode, &shape))
+    SheetShape shape;
+    if (!sheet_shape_of(sheet, mode, &shape))
         return;
     double most = 0, low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
     for (int k = 0; k < shape.points; ++k)
