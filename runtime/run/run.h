@@ -99,6 +99,9 @@ double scene_value(const gic_model *code, gic_head *self, int i);
 /* The part of it for fast states: wheels roll, except fast states that the scene (NULL: none) gives. Returns a status.
  */
 int scene_set_fast(const gic_model *model, const Scene *scene, gic_head *self);
+/* The driver of a scene, if it has one, looks where it is time for that; engines with another state than the standard
+ * one need a right-hand side for it. Returns a status. */
+int scene_look(const Engine *engine, const Scene *scene, gic_head *self);
 /* One step of a scene, by the engine's code or faster one: a constant one, or where `variable` is given one towards
  * `end` that stops at kinks of inputs. Before it the driver looks, where it is time for that. */
 int scene_step(const Engine *engine, const gic_model *model, const Scene *scene, Variable *variable, gic_head *self,

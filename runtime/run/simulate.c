@@ -527,9 +527,10 @@ static void look_around(Run *run)
     show_progress(run);
 }
 
-/* A look of the driver; engines with another state need a right-hand side for it. */
-static int look(const Engine *engine, gic_head *self, Driver *driver)
+int scene_look(const Engine *engine, const Scene *scene, gic_head *self)
 {
+    if (!scene->driver || !driver_is_due(scene->driver, gic_time(self)))
+        return GIC_OK;
     double state[engine->standard_count + 1];
     const double *own = instance_array(self, engine->code->state_offset);
     const int status = engine->leave ? engine_look(engine, self, state, NULL) : GIC_OK;
@@ -537,7 +538,7 @@ static int look(const Engine *engine, gic_head *self, Driver *driver)
         return status;
     const int half = (engine->standard_count - engine->code->fast_count) / 2;
     const Sight sight = sight_of(engine->leave ? state : own, half);
-    driver_look(driver, gic_time(self), &sight);
+    driver_look(scene->driver, gic_time(self), &sight);
     return GIC_OK;
 }
 
@@ -619,14 +620,12 @@ int scene_step(const Engine *engine, const gic_model *model, const Scene *scene,
         replay_look(scene, gic_time(self), instance_array(self, model->input_offset));
     if (scene->hold)
         hold_look(scene, gic_time(self), instance_array(self, model->input_offset));
-    if (scene->driver && driver_is_due(scene->driver, gic_time(self))) {
-        const int status = look(engine, self, scene->driver);
-        if (status != GIC_OK)
-            return status;
-    }
+    int status = scene_look(engine, scene, self);
+    if (status != GIC_OK)
+        return status;
     if (scene->rest && sleep_step(scene->rest, model, scene, self))
         return GIC_OK;
-    const int status = scene_step_awake(engine, model, scene, variable, self, end);
+    status = scene_step_awake(engine, model, scene, variable, self, end);
     if (scene->rest && status == GIC_OK)
         sleep_watch(scene->rest, model, self);
     return status;

@@ -69,24 +69,27 @@ typedef struct Work {
     int pipe;
 } Work;
 
+static int64_t next_run(void *context)
+{
+    const Work *work = context;
+    const int64_t i = atomic_fetch_add(work->taken, 1);
+    return i < work->share->count ? work->share->run[i] : -1;
+}
+
+static void send_result(void *context, const RunResult *result)
+{
+    const Work *work = context;
+    const Parcel parcel = {result->run, result->status, (uint32_t)strlen(result->row) + 1,
+                           result->reason ? (uint32_t)strlen(result->reason) + 1 : 0};
+    send_bytes(work->pipe, &parcel, sizeof parcel);
+    send_bytes(work->pipe, result->row, parcel.row);
+    send_bytes(work->pipe, result->reason, parcel.reason);
+}
+
 static void make(void *context)
 {
     const Work *work = context;
-    const Share *share = work->share;
-    RunResult result[share->together];
-    for (int64_t i; (i = atomic_fetch_add(work->taken, share->together)) < share->count;) {
-        const int64_t left = share->count - i;
-        const int runs = left < share->together ? (int)left : share->together;
-        if (!share->make(share->context, share->run + i, runs, result))
-            break;
-        for (int k = 0; k < runs; ++k) {
-            const Parcel parcel = {result[k].run, result[k].status, (uint32_t)strlen(result[k].row) + 1,
-                                   result[k].reason ? (uint32_t)strlen(result[k].reason) + 1 : 0};
-            send_bytes(work->pipe, &parcel, sizeof parcel);
-            send_bytes(work->pipe, result[k].row, parcel.row);
-            send_bytes(work->pipe, result[k].reason, parcel.reason);
-        }
-    }
+    (void)work->share->make(work->share->context, &(Supply){next_run, send_result, context});
 }
 
 /* A failure ends this process, whoever called, with its message. */

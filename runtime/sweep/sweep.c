@@ -25,27 +25,13 @@
 
 enum { VEHICLES = 64, LANES = 4 };
 
-/* Why lanes can't be used; NULL: they can. */
-static const char *against_lanes(const Scene *scene, const Model *model)
-{
-    if (scene->method > GIC_RK4)
-        return "steps of a scene with variable ones are each run's own";
-    if (scene->driver)
-        return "a driver drives one vehicle";
-    if (scene->ratio > 1 && model->fast_states)
-        return "fast steps are made run by run";
-    if (scene->locate)
-        return "contacts within steps are looked for run by run";
-    return NULL;
-}
-
 /* Code for many vehicles, or for one. */
 static const Engine *open_code(Pool *pool, const SweepRequest *request, const Model *model, const Scene *scene,
                                const gic_batch_model **many)
 {
     const Batch batch = {VEHICLES, LANES};
     const Engine *engine = NULL;
-    const char *why = against_lanes(scene, model);
+    const char *why = lanes_unfit(scene, model);
     if (request->engine)
         return engine_open(pool, request->engine, model, &request->code);
     const bool tried = !why;

@@ -107,13 +107,19 @@ typedef struct RunResult {
     const char *row, *reason; /* its row of the results; the reason of a failure, NULL: none or unknown */
 } RunResult;
 
+/* Runs to be made, one after the other, and where their results go. */
+typedef struct Supply {
+    int64_t (*next)(void *context); /* -1: there are no more */
+    void (*done)(void *context, const RunResult *result);
+    void *context;
+} Supply;
+
 typedef struct Share {
     int64_t count;
     const int64_t *run; /* [count] runs to be made */
     int lock;           /* a file descriptor that processes made by share_runs() close */
-    int together;       /* most runs that are made at once */
-    /* Called in one of the processes: make runs. False: a request to stop came. */
-    bool (*make)(void *context, const int64_t *run, int runs, RunResult *result);
+    /* Called in each of the processes: make runs until the supply ends. False: a request to stop came. */
+    bool (*make)(void *context, const Supply *supply);
     /* Called in the caller's process with the results that came, perhaps 0, at least ten times a second. False:
      * stop. */
     bool (*take)(void *context, const RunResult *result, int results);
@@ -254,6 +260,8 @@ typedef struct Sweep {
 
 /* All runs of this part that are not finished. False: someone asked to stop. */
 bool sweep_run(const Sweep *sweep);
+/* lanes.c: why the runs of a scene can't be made side by side in lanes; NULL: they can. */
+const char *lanes_unfit(const Scene *scene, const Model *model);
 /* Seconds that one process takes for a run, measured with some that are spread over the sweep. Below 0: someone asked
  * to stop. */
 double sweep_seconds(const Sweep *sweep);
