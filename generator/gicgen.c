@@ -22,9 +22,9 @@
 
 static const char usage[] =
     "usage: gicgen MODEL.veh [-o FILE.c]      write FILE.c and its header (default: <model>.c here)\n"
-    "       gicgen --batch N MODEL.veh [-o FILE.c]\n"
+    "       gicgen --batch N MODEL.veh [--scene FILE.scene] [-o FILE.c]\n"
     "                                         write code for N vehicles at once (default: <model>_batch.c), to be\n"
-    "                                         compiled beside <model>.c\n"
+    "                                         compiled beside <model>.c, which is for the same scene or for any\n"
     "       gicgen --scene FILE.scene MODEL.veh [-o FILE.c]\n"
     "                                         write code for that scene alone, with nothing that it doesn't need\n"
     "       gicgen --fmu 2|3 MODEL.veh [--scene FILE.scene] [-o FILE.fmu]\n"
@@ -191,17 +191,17 @@ static Options read_options(int count, char **word)
     if (!options.model)
         usage_error("no model given", NULL);
     const bool fmu = options.task == TASK_FMU;
-    if (options.scene && options.task != TASK_GENERATE && options.task != TASK_REPORT && !fmu)
-        usage_error("--scene is for code, --report and --fmu", NULL);
     const bool code = options.task == TASK_GENERATE || options.task == TASK_BATCH || fmu;
+    if (options.scene && !code && options.task != TASK_REPORT)
+        usage_error("--scene is for code, --report and --fmu", NULL);
     if (options.output && options.page)
         usage_error("--graph and --report name their file themselves, without -o", options.output);
     if ((options.formed || options.recovered) && !code && options.task != TASK_REPORT)
         usage_error(options.formed ? "--solve is for code and --report" : "--recovery is for code and --report", NULL);
     if (options.batch.lanes && (!code || fmu))
         usage_error("--lanes is for code", NULL);
-    if (options.batch.lanes && options.scene)
-        usage_error("--lanes and --scene are not for the same code: leave one out", NULL);
+    if (options.batch.lanes && options.scene && options.task != TASK_BATCH)
+        usage_error("--lanes and --scene are not for the same code, but with --batch: leave one out", NULL);
     if (options.derivatives && !fmu && (options.task != TASK_GENERATE || options.batch.lanes || options.scene))
         usage_error("--derivatives is for the code of one vehicle in any scene, without --batch, --lanes and --scene",
                     NULL);

@@ -103,6 +103,8 @@ static void write_wheel_calls(void *context, Text *out, int indent)
     for (int c = 0; c < wheels->classes; ++c) {
         const WheelClass *class = &wheels->class[c];
         for (int i = 0; i < class->members; ++i) {
+            if (narrowing_wheel_image(g->formulation->narrowing, class->member[i]))
+                continue;
             const int wheel = class->member[i], place = wheel_rolling(g->model, wheel);
             const char *fast = wheel_place_text(g, "FAST", wheel, g->model->wheel[wheel].fast);
             line(out, indent,
@@ -118,6 +120,7 @@ static void write_wheel_calls(void *context, Text *out, int indent)
 
 static const Insertion drive_point[] = {{"ratios", write_ratios},
                                         {"times", write_shift_times},
+                                        {"unused", write_drive_unused},
                                         {"drive block", write_drive_lines},
                                         {"shift block", write_shift_lines},
                                         {NULL, NULL}};
@@ -145,8 +148,9 @@ static void write_friction(void *context, Text *out, int indent)
 {
     Generation *g = context;
     (void)indent;
-    if (wheels_roll(g))
-        template_expand(g->pool, out, g->templates, "batch_friction.c.in", g->model->name, NULL, &batch_fast_points, g);
+    if (wheels_roll(g) && (!g->formulation->narrowing || g->formulation->narrowing->friction))
+        template_expand(g->pool, out, g->templates, batch_friction_template(g), g->model->name, NULL, &batch_fast_points,
+                        g);
 }
 
 static void write_arrays(void *context, Text *out, int indent)
@@ -162,6 +166,7 @@ static void write_link(void *context, Text *out, int indent)
 {
     const Generation *g = context;
     Constants none = {0};
+    write_posts_input(g, out, indent, "gic_lane");
     write_fast_block(g, out, &g->formulation->wheels->link, SCOPE_FAST, &none, indent);
 }
 
@@ -172,6 +177,12 @@ static void write_torque(void *context, Text *out, int indent)
     write_fast_block(g, out, &g->formulation->wheels->torque, SCOPE_FAST, &none, indent);
 }
 
+static void write_assume_fast(void *context, Text *out, int indent)
+{
+    Generation *g = context;
+    write_batch_assume(g, out, indent, ABOUT_FAST);
+}
+
 static const Insertion fast_point[] = {{"friction", write_friction},
                                        {"wheel classes", write_wheel_classes},
                                        {"link", write_link},
@@ -180,9 +191,12 @@ static const Insertion fast_point[] = {{"friction", write_friction},
                                        {"torque", write_torque},
                                        {"wheel calls", write_wheel_calls},
                                        {"drive", write_batch_drive},
+                                       {"assume fast", write_assume_fast},
+                                       {"images", write_batch_images},
                                        {NULL, NULL}};
 
-const Insertions batch_fast_points = {(const char *const[]){"batch_fast.c.in", "batch_friction.c.in", NULL}, fast_point,
+const Insertions batch_fast_points = {(const char *const[]){"batch_fast.c.in", "batch_friction.c.in",
+                                                             "batch_friction_across.c.in", NULL}, fast_point,
                                       NULL};
 
 void write_batch_fast(Generation *g, Text *out)

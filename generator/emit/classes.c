@@ -252,8 +252,7 @@ bool class_in_lanes(const Generation *g, int class)
     return g->plan->lanes && g->plan->class_lanes[class];
 }
 
-/* True if the class has a member that is not the image of another one. */
-static bool is_called(const Generation *g, int c)
+bool class_is_called(const Generation *g, int c)
 {
     const Class *class = &g->sequence->class[c];
     for (int i = 0; i < class->members; ++i)
@@ -270,7 +269,7 @@ void write_classes(void *context, Text *out, int indent)
         write_lane_links(g, out);
     for (g->class = 0; g->class < g->sequence->classes; ++g->class) {
         Text body = {.pool = g->pool};
-        if (!is_called(g, g->class))
+        if (!class_is_called(g, g->class))
             continue;
         const char *way = g->plan->formula[g->class]->closed ? "closed.c.in" : "subset.c.in";
         if (class_in_lanes(g, g->class))

@@ -98,6 +98,8 @@ extern const Insertions subset_points;
 void write_classes(void *context, Text *out, int indent);
 /* The constants of g->class that the text refers to so far. */
 void write_class_constants(Generation *g, Text *out);
+/* True if the class has a member that is not the image of another one. */
+bool class_is_called(const Generation *g, int class);
 /* True if the members of a class are solved side by side in lanes. */
 bool class_in_lanes(const Generation *g, int class);
 /* Number of bodies that Newton's iteration recovers. */
@@ -204,6 +206,14 @@ void write_assumptions(void *context, Text *out, int indent); /* the functions t
 void write_assume(Generation *g, Text *out, int indent, AssumptionAbout about); /* the call of this function */
 void write_images(void *context, Text *out, int indent);    /* copies the numbers of wheels from their mirror images */
 void write_condition(void *context, Text *out, int indent); /* the text that the last status is about */
+/* The same of code for many vehicles. */
+extern const Insertions lane_assumption_points, lane_road_points;
+void write_batch_assumptions(void *context, Text *out, int indent);
+void write_batch_assume(Generation *g, Text *out, int indent, AssumptionAbout about);
+void write_batch_road(Generation *g, Text *out);
+const char *batch_friction_template(const Generation *g);
+void write_batch_images(void *context, Text *out, int indent);
+void write_batch_assumed(void *context, Text *out, int indent); /* at set-up: the code for one takes the same for granted */
 
 /* wheels.c, wheel_lanes.c, powertrain.c: insertion points of their templates. */
 extern const Insertions wheels_points, wheel_points, dual_rate_points, states_points, states_rate_points;
@@ -219,6 +229,9 @@ void write_dual_rate(void *context, Text *out, int indent);
 void write_wheel_sizes(Generation *g, Text *out, int indent);
 void write_wheel_members(void *context, Text *out, int indent); /* of the instance */
 void wheel_counts(Generation *g, Text *out, const Figures *figures);
+
+/* A line that names the inputs `u` if wheels stand on posts, whose heights are inputs. */
+void write_posts_input(const Generation *g, Text *out, int indent, const char *real);
 
 /* The statements of a block in which rate[] are rates of fast states, of one wheel or of all. */
 void write_fast_block(const Generation *g, Text *out, const Block *block, NamingScope scope, Constants *constants,
@@ -245,6 +258,7 @@ void write_powertrain_sizes(Generation *g, Text *out, int indent);
 void write_ratios(void *context, Text *out, int indent);
 void write_shift_times(void *context, Text *out, int indent);
 void write_drive_lines(void *context, Text *out, int indent);
+void write_drive_unused(void *context, Text *out, int indent); /* of what a scene may not need */
 void write_shift_lines(void *context, Text *out, int indent);
 void write_powertrain_members(Generation *g, Text *out, int indent); /* of the instance */
 

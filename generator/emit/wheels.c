@@ -172,16 +172,20 @@ static void write_friction(void *context, Text *out, int indent)
         template_expand(g->pool, out, g->templates, friction_template(g), g->model->name, NULL, &wheels_points, g);
 }
 
-/* The heights of posts are inputs. */
-static void write_link(void *context, Text *out, int indent)
+void write_posts_input(const Generation *g, Text *out, int indent, const char *real)
 {
-    const Generation *g = context;
-    Constants none = {0};
     bool posts = false;
     for (int w = 0; w < g->model->wheels; ++w)
         posts = posts || g->model->wheel[w].post;
     if (posts)
-        line(out, indent, "const gic_real *const u = self->input;");
+        line(out, indent, "const %s *const u = self->input;", real);
+}
+
+static void write_link(void *context, Text *out, int indent)
+{
+    const Generation *g = context;
+    Constants none = {0};
+    write_posts_input(g, out, indent, "gic_real");
     write_fast_block(g, out, &g->formulation->wheels->link, SCOPE_FAST, &none, indent);
 }
 

@@ -12,7 +12,9 @@ cp "$root"/runtime/gic_runtime.[ch] "$root/runtime/gic_batch.h" "$root/runtime/g
 sed "s|\.\./\.\./\.\./models|$root/models|; /type: reaction/d" "$root/tests/data/tuning/car.veh" >"$work/car.veh"
 cd "$work" || exit 1
 
-# agrees MODEL.veh OPTIONS LANES COMPILER...: eight vehicles, LANES of them in a vector, have the same bits
+# agrees MODEL.veh OPTIONS LANES COMPILER...: eight vehicles, LANES of them in a vector, have the same bits; $good of them
+# have outputs at the end
+good=8
 agrees() {
     file=$1
     options=$2
@@ -23,7 +25,7 @@ agrees() {
     # shellcheck disable=SC2086  # a list of words
     "$gicgen" $options "$file" -o "$name.c" && "$gicgen" --batch 8 --lanes "$lanes" $options "$file" &&
         rm -f lanes && "$@" -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror -ffp-contract=off -DGIC_BATCH_LIBM -DBATCH="${name}_batch_model" -DSTEP=$step -I. \
-            lanes.c "$name.c" "${name}_batch.c" gic_runtime.c -lm -o lanes && [ "$(./lanes)" = '8 8 8 of 8' ]
+            lanes.c "$name.c" "${name}_batch.c" gic_runtime.c -lm -o lanes && [ "$(./lanes)" = "8 $good 8 of 8" ]
     verdict $? "$file $options, $lanes lanes: $* $(./lanes)"
 }
 
@@ -68,6 +70,28 @@ for how in 'g++ -std=c++11' 'clang++ -std=c++11 -DGIC_FLOAT'; do
 done
 "$gicgen" --batch 8 "$hmmwv" -o again.c && sed 's/again.h/hmmwv_batch.h/' again.c | cmp - hmmwv_batch.c
 verdict $? "the same input gives other bytes"
+
+# code for one scene: nothing but rolling, in which one side is the image of the other; the same on a road that is the same
+# on both sides; steering, so that both sides are computed
+for kind in rolling across steering; do
+    case $kind in rolling) more= ;; across) more='road: {type: bumps, bumps: [{x: 4, length: 2, height: 0.06}]}' ;;
+    steering) more='inputs: {rack: {knots: {times: [0, 1], values: [0, 0.01]}}}' ;; esac
+    printf '%s\n' 'gicscene: 1' 'duration: 1' 'step: 0.001' 'integrator: ab3' 'outputs: [chassis.x, chassis.z]' "$more" >$kind.scene
+done
+good=5
+agrees "$vehicle" '--scene rolling.scene' 4 gcc -std=c11 -O1 -DSCENE
+agrees "$vehicle" '--scene across.scene' 8 clang -std=c11 -O1 -DSCENE
+good=7 # whatever moves to the side, and an input that the scene moves
+agrees "$vehicle" '--scene steering.scene' 4 gcc -std=c11 -O0 -DSCENE
+good=6 # without inputs
+agrees "$hmmwv" '--scene rolling.scene --recovery newton' 4 gcc -std=c11 -O1 -DSCENE
+agrees "$hmmwv" '--scene across.scene' 8 gcc -std=c11 -O1 -DSCENE -fopenmp
+good=8
+"$gicgen" "$vehicle" && gcc -std=c11 -DBATCH=hmmwv_vehicle_batch_model -I. lanes.c hmmwv_vehicle.c hmmwv_vehicle_batch.c gic_runtime.c -lm -o lanes
+verdict $? "code of any scene beside lanes of one: compiles"
+./lanes
+[ $? -eq 1 ]
+verdict $? "code of any scene beside lanes of one"
 
 # code of another model is noticed
 "$gicgen" "$root/models/quarter_car.veh" -o quarter_car.c
