@@ -422,8 +422,9 @@ static void write_dual_step(void *context, Text *out, int indent)
 
 static void check_templates(Pool *pool, const char *templates)
 {
-    const Insertions *const points[] = {&batch_points,      &class_points,       &lanes_points,       &header_points,
-                                        &batch_fast_points, &batch_wheel_points, &batch_drive_points, &lane_assumption_points, &lane_road_points, NULL};
+    const Insertions *const points[] = {
+        &batch_points,       &class_points,       &lanes_points,           &header_points,    &batch_fast_points,
+        &batch_wheel_points, &batch_drive_points, &lane_assumption_points, &lane_road_points, NULL};
     templates_check(pool, templates, points);
 }
 

@@ -118,12 +118,9 @@ static void write_wheel_calls(void *context, Text *out, int indent)
 
 /* ---- powertrain -------------------------------------------------------------------------------------------------- */
 
-static const Insertion drive_point[] = {{"ratios", write_ratios},
-                                        {"times", write_shift_times},
-                                        {"unused", write_drive_unused},
-                                        {"drive block", write_drive_lines},
-                                        {"shift block", write_shift_lines},
-                                        {NULL, NULL}};
+static const Insertion drive_point[] = {{"ratios", write_ratios},           {"times", write_shift_times},
+                                        {"unused", write_drive_unused},     {"drive block", write_drive_lines},
+                                        {"shift block", write_shift_lines}, {NULL, NULL}};
 
 const Insertions batch_drive_points = {(const char *const[]){"batch_drive.c.in", NULL}, drive_point, NULL};
 
@@ -149,8 +146,8 @@ static void write_friction(void *context, Text *out, int indent)
     Generation *g = context;
     (void)indent;
     if (wheels_roll(g) && (!g->formulation->narrowing || g->formulation->narrowing->friction))
-        template_expand(g->pool, out, g->templates, batch_friction_template(g), g->model->name, NULL, &batch_fast_points,
-                        g);
+        template_expand(g->pool, out, g->templates, batch_friction_template(g), g->model->name, NULL,
+                        &batch_fast_points, g);
 }
 
 static void write_arrays(void *context, Text *out, int indent)
@@ -195,9 +192,9 @@ static const Insertion fast_point[] = {{"friction", write_friction},
                                        {"images", write_batch_images},
                                        {NULL, NULL}};
 
-const Insertions batch_fast_points = {(const char *const[]){"batch_fast.c.in", "batch_friction.c.in",
-                                                             "batch_friction_across.c.in", NULL}, fast_point,
-                                      NULL};
+const Insertions batch_fast_points = {
+    (const char *const[]){"batch_fast.c.in", "batch_friction.c.in", "batch_friction_across.c.in", NULL}, fast_point,
+    NULL};
 
 void write_batch_fast(Generation *g, Text *out)
 {

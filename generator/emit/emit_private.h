@@ -213,7 +213,8 @@ void write_batch_assume(Generation *g, Text *out, int indent, AssumptionAbout ab
 void write_batch_road(Generation *g, Text *out);
 const char *batch_friction_template(const Generation *g);
 void write_batch_images(void *context, Text *out, int indent);
-void write_batch_assumed(void *context, Text *out, int indent); /* at set-up: the code for one takes the same for granted */
+void write_batch_assumed(void *context, Text *out,
+                         int indent); /* at set-up: the code for one takes the same for granted */
 
 /* wheels.c, wheel_lanes.c, powertrain.c: insertion points of their templates. */
 extern const Insertions wheels_points, wheel_points, dual_rate_points, states_points, states_rate_points;

@@ -45,7 +45,7 @@ void write_shift_lines(void *context, Text *out, int indent)
 }
 
 static const Insertion powertrain_point[] = {{"ratios", write_ratios},           {"times", write_shift_times},
-                                             {"unused", write_drive_unused},           {"drive block", write_drive_lines},
+                                             {"unused", write_drive_unused},     {"drive block", write_drive_lines},
                                              {"shift block", write_shift_lines}, {NULL, NULL}};
 
 const Insertions powertrain_points = {(const char *const[]){"powertrain.c.in", "shift.c.in", NULL}, powertrain_point,

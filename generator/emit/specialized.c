@@ -183,12 +183,12 @@ void write_batch_images(void *context, Text *out, int indent)
 /* A condition of C that is about one vehicle, for all lanes: each comparison makes a mask. */
 static const char *lane_condition(Pool *pool, const char *broken)
 {
-    static const char or[] = " || ";
+    static const char or [] = " || ";
     Text text = {.pool = pool};
     for (const char *next = broken, *end; next; next = end ? end + strlen(or) : NULL) {
         end = strstr(next, or);
-        text_print(&text, "%s(gic_mask)(%.*s)", next == broken ? "" : " | ", (int)(end ? end - next : (int)strlen(next)),
-                   next);
+        text_print(&text, "%s(gic_mask)(%.*s)", next == broken ? "" : " | ",
+                   (int)(end ? end - next : (int)strlen(next)), next);
     }
     return text.s;
 }
@@ -216,8 +216,8 @@ static void write_lane_checks(void *context, Text *out, int indent)
 
 static const Insertion lane_assumption_point[] = {{"checks", write_lane_checks}, {NULL, NULL}};
 
-const Insertions lane_assumption_points = {
-    (const char *const[]){"batch_assume.c.in", "batch_assume_state.c.in", NULL}, lane_assumption_point, NULL};
+const Insertions lane_assumption_points = {(const char *const[]){"batch_assume.c.in", "batch_assume_state.c.in", NULL},
+                                           lane_assumption_point, NULL};
 
 void write_batch_assumptions(void *context, Text *out, int indent)
 {

@@ -150,7 +150,8 @@ const char *compiler_contents(Pool *pool, const char *const *words, int count);
 /* engine_cc.c: generated code, compiled or taken from the cache, and loaded. */
 const Engine *engine_cc(Pool *pool, const Model *model, const EngineOptions *options);
 /* Flags for vehicles in lanes: with the elementary functions of lanes; with those of libm, one by one, so that each has
- * the bits that the code for one vehicle gives. Without tires, powertrains and states of a model's own both are libm's. */
+ * the bits that the code for one vehicle gives. Without tires, powertrains and states of a model's own both are libm's.
+ */
 #define IN_LANES "-O3 -march=native"
 #define IN_LANES_AS_ALONE IN_LANES " -DGIC_BATCH_LIBM"
 

@@ -41,7 +41,8 @@ static const Engine *open_lanes(Pool *pool, const Making *making, const gic_batc
     const OpenModel *model = making->model;
     const Batch batch = {making->count, making->lanes};
     const char *why;
-    const Engine *engine = engine_batch(pool, model_for(model, pool), &model->options, &batch, IN_LANES_AS_ALONE, many, &why);
+    const Engine *engine =
+        engine_batch(pool, model_for(model, pool), &model->options, &batch, IN_LANES_AS_ALONE, many, &why);
     if (!engine)
         diag_fail((Place){model->model->source, 0, 0}, "let them make their steps one after another: lanes 1",
                   "no code for many vehicles at once: %s", why);

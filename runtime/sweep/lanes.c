@@ -57,7 +57,7 @@ static void make_steps(const Runner *r, void *batch, int32_t steps)
         many->step(batch, scene->step, scene->method, steps);
 }
 
-/* ---- outputs ------------------------------------------------------------------------------------------------------ */
+/* ---- outputs ------------------------------------------------------------ */
 
 /* A vehicle in lanes. */
 typedef struct InLanes {
@@ -123,7 +123,7 @@ static void look_at(Runner *r, int place)
     }
 }
 
-/* ---- runs come and go ----------------------------------------------------------------------------------------------- */
+/* ---- runs come and go ------------------------------------------------------------ */
 
 /* The next run for a place, or an empty one. */
 static void fill(Runner *r, int place, const Supply *supply)
@@ -159,7 +159,7 @@ static int look_and_fill(Runner *r, const Supply *supply)
     return going;
 }
 
-/* ---- steps ---------------------------------------------------------------------------------------------------------- */
+/* ---- steps ------------------------------------------------------------ */
 
 /* Before a step of one vehicle: a look of its driver, if it is due. */
 static void drive(Runner *r, int place)
