@@ -68,6 +68,9 @@ for how in 'g++ -std=c++11' 'clang++ -std=c++11 -DGIC_FLOAT'; do
     $how -x c++ -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror -O1 -I. -c hmmwv_vehicle_batch.c -o x.o
     verdict $? "$how hmmwv_vehicle_batch.c"
 done
+# no allocation, ever
+gcc -std=c11 -O0 -w -I. -c hmmwv_vehicle_batch.c -o x.o && ! nm -u x.o | grep -E ' (malloc|calloc|realloc|aligned_alloc|free)$'
+verdict $? "code for many vehicles allocates nothing"
 "$gicgen" --batch 8 "$hmmwv" -o again.c && sed 's/again.h/hmmwv_batch.h/' again.c | cmp - hmmwv_batch.c
 verdict $? "the same input gives other bytes"
 

@@ -246,9 +246,18 @@ static void test_events(void **state)
     assert_true(contacts > 4);
 }
 
+/* Thousands of vehicles stay in the cache of a core, or near it: 16 kB each, work space included. */
+static void test_memory(void **state)
+{
+    (void)state;
+    assert_true(hmmwv_vehicle_batch_model.size == sizeof(hmmwv_vehicle_batch));
+    assert_true(sizeof(hmmwv_vehicle_batch) <= (size_t)16384 * N);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_bits), cmocka_unit_test(test_failures),
-                                       cmocka_unit_test(test_refill), cmocka_unit_test(test_events)};
+                                       cmocka_unit_test(test_refill), cmocka_unit_test(test_events),
+                                       cmocka_unit_test(test_memory)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
