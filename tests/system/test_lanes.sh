@@ -13,8 +13,9 @@ sed "s|\.\./\.\./\.\./models|$root/models|; /type: reaction/d" "$root/tests/data
 cd "$work" || exit 1
 
 # agrees MODEL.veh OPTIONS LANES COMPILER...: eight vehicles, LANES of them in a vector, have the same bits; $good of them
-# have outputs at the end
+# have outputs at the end; $run runs programs of another processor
 good=8
+run=
 agrees() {
     file=$1
     options=$2
@@ -25,8 +26,8 @@ agrees() {
     # shellcheck disable=SC2086  # a list of words
     "$gicgen" $options "$file" -o "$name.c" && "$gicgen" --batch 8 --lanes "$lanes" $options "$file" &&
         rm -f lanes && "$@" -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror -ffp-contract=off -DGIC_BATCH_LIBM -DBATCH="${name}_batch_model" -DSTEP=$step -I. \
-            lanes.c "$name.c" "${name}_batch.c" gic_runtime.c -lm -o lanes && [ "$(./lanes)" = "8 $good 8 of 8" ]
-    verdict $? "$file $options, $lanes lanes: $* $(./lanes)"
+            lanes.c "$name.c" "${name}_batch.c" gic_runtime.c -lm -o lanes && said=$($run ./lanes) && [ "$said" = "8 $good 8 of 8" ]
+    verdict $? "$file $options, $lanes lanes: $* $said"
 }
 
 # a compiler that knows no vectors
@@ -73,6 +74,13 @@ gcc -std=c11 -O0 -w -I. -c hmmwv_vehicle_batch.c -o x.o && ! nm -u x.o | grep -E
 verdict $? "code for many vehicles allocates nothing"
 "$gicgen" --batch 8 "$hmmwv" -o again.c && sed 's/again.h/hmmwv_batch.h/' again.c | cmp - hmmwv_batch.c
 verdict $? "the same input gives other bytes"
+
+# NEON's vectors of two doubles and four floats
+run=qemu-aarch64
+agrees "$vehicle" '' 4 aarch64-linux-gnu-gcc -std=c11 -O2 -static -DGIC_FLOAT
+agrees "$vehicle" '' 2 aarch64-linux-gnu-gcc -std=c11 -O2 -static
+check "of two doubles" [ "$(aarch64-linux-gnu-objdump -d lanes | grep -c 'fmul[^v]*v[0-9]*\.2d')" -gt 100 ]
+run=
 
 # code for one scene: nothing but rolling, in which one side is the image of the other; the same on a road that is the same
 # on both sides; steering, so that both sides are computed

@@ -42,9 +42,9 @@ outputs: [chassis.z]
 YYY
 runs=240
 
-# sweep ARGUMENT...
+# sweep ARGUMENT...: run by run, so that it can be ended between them
 sweep() {
-    "$gicsweep" "$car" "$work/s.scene" --latin $runs --seed 7 --vary speed=4:6 --vary spring_f_l=0.23:0.24 "$@"
+    "$gicsweep" --engine cc "$car" "$work/s.scene" --latin $runs --seed 7 --vary speed=4:6 --vary spring_f_l=0.23:0.24 "$@"
 }
 # task I [FOLDER]: as Slurm starts it
 task() {
