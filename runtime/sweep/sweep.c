@@ -25,6 +25,22 @@
 
 enum { VEHICLES = 64, LANES = 4 };
 
+/* Can the C compiler be started? */
+static bool compiler_starts(Pool *pool, const EngineOptions *code)
+{
+    char **argv = NULL;
+    const char *said;
+    int words, count = 0;
+    const char **word = compiler_words(pool, code->compiler, "--version", "", &words);
+    for (int i = 0; i < words; ++i)
+        *POOL_PUSH(pool, argv, count) = pool_print(pool, "%s", word[i]);
+    *POOL_PUSH(pool, argv, count) = NULL;
+    interrupt_hold();
+    const bool starts = words && process_run(pool, argv, "", &said) != PROCESS_NOT_STARTED;
+    interrupt_release();
+    return starts;
+}
+
 /* Code for many vehicles, or for one. */
 static const Engine *open_code(Pool *pool, const SweepRequest *request, const Model *model, const Scene *scene,
                                const gic_batch_model **many)
@@ -42,7 +58,8 @@ static const Engine *open_code(Pool *pool, const SweepRequest *request, const Mo
     if (!request->quiet)
         diag_note(
             pool_print(pool, "%s: note: each run by itself instead of lanes: %s\n", program_place().source->path, why));
-    return engine_open(pool, *many || !tried ? "cc" : "tcc", model, &request->code);
+    const bool compiled = *many || (!tried && compiler_starts(pool, &request->code));
+    return engine_open(pool, compiled ? "cc" : "tcc", model, &request->code);
 }
 
 static uint64_t file_hash(Pool *pool, const char *path)
