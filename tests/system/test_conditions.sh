@@ -206,6 +206,7 @@ for integrator in ab3 rk4 ros3 adams rkck; do
   - {if: "push.x > 0.25", mark: faster}
   - {if: "time > 0.355", mark: twin}
   - {if: "x < 0", mark: never}' >"$work/a.scene"
+    case $integrator in adams | rkck) echo 'tolerance: 1e-12' >>"$work/a.scene" ;; esac
     run "$work/pushed.veh" "$work/a.scene" -o "$work/a.csv"
     for condition in 'time > 0.355' 'input.push > 0.5' 'push.x > 0.25'; do
         check "$integrator: $condition" happened "$condition" 0.355 1e-12
@@ -213,7 +214,7 @@ for integrator in ab3 rk4 ros3 adams rkck; do
     check "$integrator: both of one condition" [ "$(grep -c 'happened *time > 0.355 at t = 0.355 s' "$work/err")" -eq 2 ]
     check "$integrator: what does not follow" says 'did not happen *x < 0'
     check "$integrator: one parabola from there on" awk -F, 'NR > 1 {s = $1 < 0.355 ? 0 : $1 - 0.355; d = $5 - s * s / 4
-        if (!(d < 1e-12 && d > -1e-12)) bad = 1} END {exit bad || NR != 12}' "$work/a.csv"
+        if (!(d < 1e-10 && d > -1e-10)) bad = 1} END {exit bad || NR != 12}' "$work/a.csv"
     sed -i 's/^when:/until: "input.push > 0.5"\n&/' "$work/a.scene"
     run "$work/pushed.veh" "$work/a.scene" -o "$work/a.csv"
     check "$integrator: an end that follows" last 1 0.355 1e-12

@@ -41,14 +41,14 @@ done
 # a lock below 0 is none, and a number below 0 a mistake
 sed "s/lock: 100 + 300 \* grip/lock: -100 - 300 * grip/" "$rig" >below.veh
 sed "s/, lock: 100 + 300 \* grip//" "$rig" >open.veh
-"$gicgen" --dump-model open.veh >dump 2>said && "$states" dump --count 20 --seed 2 -o states.csv 2>said
+"$gicgen" --dump-model open.veh >open.dump 2>said && "$states" open.dump --count 20 --seed 2 -o open_states.csv 2>said
 for engine in tape gic; do
-    "$gicrun" -q --engine $engine --eval states.csv open.veh -o open.csv >said 2>&1 &&
-        "$gicrun" -q --engine $engine --eval states.csv below.veh -o below.csv >said 2>&1 && [ -s open.csv ] && cmp open.csv below.csv >said
+    "$gicrun" -q --engine $engine --eval open_states.csv open.veh -o open.csv >said 2>&1 &&
+        "$gicrun" -q --engine $engine --eval open_states.csv below.veh -o below.csv >said 2>&1 && [ -s open.csv ] && cmp open.csv below.csv >said
     verdict $? "a lock below 0 by $engine"
 done
 sed "s/lock: 100 + 300 \* grip/lock: -20/" "$rig" >mistaken.veh
-"$gicgen" --dump-model mistaken.veh >dump 2>said
+"$gicgen" --dump-model mistaken.veh >mistaken.dump 2>said
 [ $? -eq 1 ] && grep -q 'must not be negative, as -20 is' said
 verdict $? 'a number below 0'
 
