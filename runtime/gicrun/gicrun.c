@@ -38,6 +38,8 @@ static const char help[] =
     "      --live PORT    run as fast as time passes, with inputs and outputs by UDP on this computer,\n"
     "                     models/LIVE.md; 0: a port that is free\n"
     "      --inputs NAMES of --live: those that packets give, between commas; else all\n"
+    "      --joystick DEVICE  of --live: a joystick drives, /dev/input/js0, by --axes, words\n"
+    "                     NAME=axis0:LOW:HIGH or NAME=button0:LOW:HIGH with commas between them\n"
     "      --seconds S    of --live: so long; else until Ctrl-C\n"
     "      --record FILE  of --live: the inputs as they were held\n"
     "      --replay FILE  repeat what a page of --drive or --live recorded\n"
@@ -216,6 +218,8 @@ static Asked read_command_line(int count, char **word)
         {"seconds", .read = read_seconds},
         {"record", .text = &study->record},
         {"inputs", .text = &study->inputs},
+        {"joystick", .text = &study->joystick},
+        {"axes", .text = &study->axes},
         {"replay", .text = &study->replay},
         {"eval", .text = &study->states},
         {"equilibrium", .on = &asked.rests},
@@ -355,8 +359,10 @@ static Asked read_command_line(int count, char **word)
                    "--replay nor with --eval, --equilibrium, --modes, --linearize, --trim, --gradient, --identify, "
                    "--optimize, --kc, --sheet and --manoeuvre",
                    NULL);
-    if (!asked.live && (study->record || study->inputs || study->seconds > 0))
-        usage_fail("gicrun", "--inputs, --record and --seconds go with --live", NULL);
+    if (!asked.live && (study->record || study->inputs || study->joystick || study->axes || study->seconds > 0))
+        usage_fail("gicrun", "--inputs, --joystick, --axes, --record and --seconds go with --live", NULL);
+    if (!study->joystick != !study->axes)
+        usage_fail("gicrun", "--joystick and --axes go together: a device, and what it moves", NULL);
     if (study->replay && !runs)
         usage_fail("gicrun",
                    "--replay goes with a run, not with --eval, --equilibrium, --modes, --linearize, --trim, "

@@ -274,10 +274,11 @@ typedef struct gicl_study {
                              * the motion of "trim"; names of "gradient" and "identify"; words name=low:high of
                              * "optimize" */
     int keys;
-    const char *trace;  /* of "manoeuvre" */
-    const char *record; /* of "live" */
-    const char *inputs; /* the same: names of those that packets give, between commas; NULL: all */
-    int port;           /* the same: of UDP on the loopback interface; 0: one that is free, which a note tells */
+    const char *trace;           /* of "manoeuvre" */
+    const char *record;          /* of "live" */
+    const char *inputs;          /* the same: names of those that packets give, between commas; NULL: all */
+    const char *joystick, *axes; /* the same: a device that drives, and words name=axis0:low:high, between commas */
+    int port;       /* the same: of UDP on the loopback interface; 0: one that is free, which a note tells */
     double seconds; /* the same; 0: until a signal asks to stop, which a listener with `signals` must have left to it */
     const char *const *vary; /* [varied] of "kc", "sheet" and "manoeuvre": words name=low:high:count, without "loads",
                               * "joints", "compare" and "trace" */

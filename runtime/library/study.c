@@ -80,6 +80,8 @@ static const struct {
     {"trace", offsetof(gicl_study, trace), IN(MANOEUVRE), 0},
     {"record", offsetof(gicl_study, record), IN(LIVE), 0},
     {"inputs", offsetof(gicl_study, inputs), IN(LIVE), 0},
+    {"joystick", offsetof(gicl_study, joystick), IN(LIVE), 0},
+    {"axes", offsetof(gicl_study, axes), IN(LIVE), 0},
 };
 
 static const char *word(const gicl_study *study, size_t i)
@@ -107,6 +109,8 @@ static int check_words(const gicl_study *study, Kind kind, bool signals, gicl_me
         return call_wrong(said, "leave one of them 0", "'loads' and 'joints' are two studies");
     if (study->travel != 0 && !(study->travel > 0 && study->travel <= 10))
         return call_wrong(said, NULL, "'travel' must be above 0 and at most 10 m");
+    if (!study->joystick != !study->axes)
+        return call_wrong(said, "give both, or none", "'axes' says what 'joystick' moves");
     if ((study->port != 0 || study->seconds != 0) && kind != LIVE)
         return call_wrong(said, "leave them 0", "'port' and 'seconds' go with live");
     if (study->port < 0 || study->port > 65535)
@@ -214,6 +218,8 @@ static Request request_of(const Writing *w)
                      .flags = options->flags,
                      .record = s->record,
                      .inputs = s->inputs,
+                     .joystick = s->joystick,
+                     .axes = s->axes,
                      .port = s->port,
                      .seconds = s->seconds,
                      .quiet = s->quiet};

@@ -21,6 +21,7 @@ typedef struct Live {
     const Scene *scene;
     const Request *request;
     LivePort *port;
+    LiveJoystick *joystick; /* NULL: there is none */
     LiveRecord *record;
     gic_head *self, *copy;  /* copy: for outputs */
     const gic_head *failed; /* which of the two has what went wrong */
@@ -55,10 +56,15 @@ static void record_inputs(Live *l)
     live_record_inputs(l->record, l->recorded, l->scene->hold->by, l->scene->hold->value);
 }
 
-/* What packets say, for the step that begins. */
+/* What packets or the joystick say, for the step that begins. */
 static void take_inputs(Live *l)
 {
     const HoldBy before = l->scene->hold->by;
+    const bool had = live_joystick_has(l->joystick);
+    if (l->joystick)
+        live_joystick_take(l->joystick, gic_time(l->self), &l->by, l->value);
+    if (had || live_joystick_has(l->joystick))
+        live_port_keep(l->port, live_joystick_has(l->joystick), l->steps);
     live_port_take(l->port, l->steps, &l->by, l->value);
     const bool changed = hold_take(l->scene, gic_time(l->self), l->by, l->value, inputs_of(l));
     l->taken += changed;
@@ -252,6 +258,9 @@ void live(Pool *pool, const Engine *engine, const Model *model, const Scene *sce
     l.copy = instance_new(pool, engine);
     l.row = pool_alloc(pool, sizeof(double) * (size_t)(1 + scene->columns));
     l.value = pool_alloc(pool, sizeof(double) * (size_t)(1 + scene->hold->inputs));
+    memcpy(l.value, port->begin, sizeof(double) * (size_t)scene->hold->inputs);
+    if (request->joystick)
+        l.joystick = live_joystick_open(pool, port, model, scene, request->joystick, request->axes);
     interrupt_hold(); /* else temporary files of tables would remain */
     start(&l);
     l.record = live_record_open(pool, model, scene, request->results, request->record);
@@ -272,6 +281,7 @@ void live(Pool *pool, const Engine *engine, const Model *model, const Scene *sce
     interrupt_take();
     interrupt_release();
     live_port_close(port);
+    live_joystick_close(l.joystick);
     if (!request->quiet)
         summary(&l);
     if (status != GIC_OK)

@@ -46,6 +46,7 @@ struct LivePort {
     uint64_t hash;
     int inputs, outputs;
     const double *low, *high; /* [inputs] what values may be */
+    const double *begin;      /* [inputs] the scene's at time 0 */
     int64_t patience;         /* steps without a good packet after which the inputs are the scene's again */
     unsigned char *packet;    /* [GIC_LIVE_MOST] */
     /* during the run */
@@ -63,10 +64,29 @@ void live_port_close(LivePort *port);
 /* Take what has come before step number `step`: who has the inputs now, and value[inputs] of the last good packet; they
  * stay where none has come. */
 void live_port_take(LivePort *port, int64_t step, HoldBy *by, double *value);
+/* Who drives without packets has the inputs in step number `step`, and those of packets are dropped; or has them no
+ * longer. */
+void live_port_keep(LivePort *port, bool held, int64_t step);
 /* Send outputs after a step, which have `outputs` numbers, to all who want them. */
 void live_port_send(LivePort *port, int64_t step, unsigned flags, const double *value);
 /* What was dropped and why, for people: "2 dropped: 2 of a wrong size". */
 const char *live_port_dropped(Pool *pool, const LivePort *port);
+
+/* ---- live_joystick.c: who drives by Linux's joystick device ------------------------------------------------------ */
+
+typedef struct LiveJoystick LiveJoystick;
+
+/* axes: words NAME=axisK:LOW:HIGH or NAME=buttonK:LOW:HIGH with commas between them: an input goes from LOW to HIGH, in
+ * its unit, as the axis goes from end to end or as the button is pressed. Ends in diag_fail where they or the device
+ * are wrong. */
+LiveJoystick *live_joystick_open(Pool *pool, const LivePort *port, const Model *model, const Scene *scene,
+                                 const char *device, const char *axes);
+/* What it has said before the step at `time`, into value [inputs]; *by: who has the inputs now. Where the device is
+ * gone a warning says so, and the scene has them again. */
+void live_joystick_take(LiveJoystick *joystick, double time, HoldBy *by, double *value);
+/* True while it has the inputs. NULL: there is none. */
+bool live_joystick_has(const LiveJoystick *joystick);
+void live_joystick_close(LiveJoystick *joystick);
 
 /* ---- live_clock.c: deadlines --------------------------------------------------------------------------------------
  */

@@ -43,8 +43,11 @@ static void write_names(LivePort *port, Pool *pool, const Model *model, const Sc
     text_print(&text, "model %s\nstep %s\noutput_step %s\n", model->name, csv_digits(scene->step, step),
                csv_digits(scene->output_step, output_step));
     const double *value = begin_values(pool, model, scene);
+    double *begin = pool_alloc(pool, sizeof *begin * ((size_t)port->inputs + 1));
+    port->begin = begin;
     for (int i = 0; i < port->inputs; ++i) {
         const int at = scene->hold->input[i];
+        begin[i] = value[at];
         text_print(&text, "input %s [%s] %s\n", model->input[at].name, model->input[at].unit,
                    csv_digits(value[at], digits));
     }
@@ -269,6 +272,13 @@ void live_port_take(LivePort *port, int64_t step, HoldBy *by, double *value)
         port->held = false;
         *by = HOLD_SCENE;
     }
+}
+
+void live_port_keep(LivePort *port, bool held, int64_t step)
+{
+    port->holder = (struct sockaddr_in){0};
+    port->held = held;
+    port->heard = step;
 }
 
 static int64_t dropped(const LivePort *port)

@@ -46,6 +46,7 @@ typedef struct Request {
     const char *driven;           /* of drive_write(): its page */
     const char *record;           /* of live(): inputs as they were held; NULL: not wanted */
     const char *inputs;           /* the same: names of those that packets give, between commas; NULL: all */
+    const char *joystick, *axes;  /* the same: a device that drives, and what it moves; NULL: packets alone do */
     int port;                     /* the same: of UDP, 0: one that is free */
     double seconds;               /* the same: of the run; 0: until it is interrupted */
     const char *engine;           /* of manoeuvres: one of engine_name */

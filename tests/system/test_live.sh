@@ -136,6 +136,37 @@ check 'an axis at its end, then over the middle' held accelerator 0 0.7500076296
 check 'a pedal that is not pressed' held brake 0 0
 check 'a button' held selector 0 1
 check 'it replays' again "$vehicle" "$lane"
+
+# the same by gicrun itself; packets do not come in between. The pipe stays open until all is said
+axes=rack=axis0:0.03:-0.03,accelerator=axis5:0:1,brake=axis2:0:1,selector=button0:0:1
+exec 4<>stick
+begin "$vehicle" "$lane" --seconds 6 -o live.csv --record inputs.csv --joystick stick --axes "$axes" 4>&-
+/usr/bin/python3 stick.py stick &
+writer=$!
+sleep 1
+(cd "$root/tests/tools" && /usr/bin/python3 -B -c 'import live, sys; p = live.Peer(int(sys.argv[1])); p.send(p.begin)' "$port") >said 2>&1
+wait "$writer"
+exec 4>&-
+end
+check 'a joystick that is gone is told' says 'warning: the joystick stick is gone at t = '
+check 'the joystick took the inputs over and gave them back' says 'taken over           1 times, given back 1 times'
+check 'packets meanwhile were dropped' says ' 1 dropped: 1 of another sender'
+check 'its recording says so' hands '0 1 0'
+check 'its axis in the middle, then at its end' held rack 0 0.03
+check 'its axis at an end, then over the middle' held accelerator 0 0.75000762962
+check 'its pedal that is not pressed' held brake 0 0
+check 'its button' held selector 0 1
+check 'its run replays' again "$vehicle" "$lane"
+for wrong in rack=axis0:1 rack=axle0:0:1 rack=axis0:a:1 rack=axis0:-1:1 pinion=axis0:0:1 rack=axis256:0:0.01 rack=axis0.5:0:0.01; do
+    "$gicrun" --live 0 "$vehicle" "$lane" --seconds 1 --joystick stick --axes $wrong -o no.csv >out 2>err
+    [ $? -eq 1 ] && [ ! -e no.csv ] && [ "$(grep -c 'error: ' err) $(grep -c 'remedy: ' err)" = '1 1' ]
+    verdict $? "no mapping of gicrun: $wrong"
+done
+"$gicrun" --live 0 "$vehicle" "$lane" --seconds 1 --joystick none --axes rack=axis0:0:0.01 >out 2>err
+check 'no such device' says "can't open the joystick none: No such file"
+"$gicrun" --live 0 "$vehicle" "$lane" --seconds 1 --joystick stick >out 2>err
+[ $? -eq 2 ]
+verdict $? 'a joystick that moves nothing'
 for wrong in rack=axis0:1 rack=axle0:0:1 rack=axis0:a:1; do
     begin "$vehicle" "$lane" --seconds 2
     /usr/bin/python3 -B "$root/runtime/examples/live_joystick.py" "$port" stick $wrong >out2 2>said

@@ -224,7 +224,7 @@ class Model:
 
     def write(self, kind, scene=None, *, results=None, page=None, plot=None, with_=None, replay=None, states=None, at=None,
               axle=None, travel=0.0, loads=False, joints=False, compare=None, manoeuvre=None, keys=None, trace=None, formula=None,
-              measured=None, record=None, inputs=None, port=0, seconds=0.0, vary=None):
+              measured=None, record=None, inputs=None, joystick=None, axes=None, port=0, seconds=0.0, vary=None):
         """What gicrun writes: files, and the text that it prints, which is returned. kind: "run", "drive", "eval",
         "equilibrium", "modes", "linearize", "kc", "sheet", "manoeuvre", "trim", "gradient", "identify", "optimize" or
         "live"; others are gicrun's options (page: of --animate, --drive or --report; formula: of --gradient and --optimize; measured: of --identify; port: of
@@ -242,7 +242,7 @@ class Model:
                                _number(travel, "travel"), bool(loads), bool(joints), _bytes(compare), _bytes(manoeuvre), _bytes(formula),
                                _bytes(measured),
                                (ctypes.c_char_p * (len(words) + 1))(*words), len(words), _bytes(trace),
-                               _bytes(record), _bytes(inputs), _count(port, "port", 0, 65535), _number(seconds, "seconds"),
+                               _bytes(record), _bytes(inputs), _bytes(joystick), _bytes(axes), _count(port, "port", 0, 65535), _number(seconds, "seconds"),
                                (ctypes.c_char_p * (len(grid) + 1))(*grid), len(grid), True)
         call("write", self._handle, ctypes.byref(study))
         self.warnings = _library.texts(_library.WARNING, _library.NOTE)

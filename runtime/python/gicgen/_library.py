@@ -31,7 +31,8 @@ class Study(ctypes.Structure):
                 ("loads", ctypes.c_int), ("joints", ctypes.c_int), ("compare", ctypes.c_char_p), ("manoeuvre", ctypes.c_char_p),
                 ("formula", ctypes.c_char_p), ("measured", ctypes.c_char_p),
                 ("key", ctypes.POINTER(ctypes.c_char_p)), ("keys", ctypes.c_int), ("trace", ctypes.c_char_p),
-                ("record", ctypes.c_char_p), ("inputs", ctypes.c_char_p), ("port", ctypes.c_int), ("seconds", ctypes.c_double),
+                ("record", ctypes.c_char_p), ("inputs", ctypes.c_char_p), ("joystick", ctypes.c_char_p),
+                ("axes", ctypes.c_char_p), ("port", ctypes.c_int), ("seconds", ctypes.c_double),
                 ("vary", ctypes.POINTER(ctypes.c_char_p)), ("varied", ctypes.c_int), ("quiet", ctypes.c_int)]
 
 
