@@ -454,7 +454,7 @@ deps:
 # ---- installing
 
 manuals := $(wildcard generator/*.1 runtime/*/*.1)
-installed_models := $(wildcard models/*.* $(foreach folder,parts tutorial controllers kc roads tires scenes,models/$(folder)/*.*))
+installed_models := $(wildcard models/*.* $(foreach folder,parts tutorial controllers kc optimize roads tires scenes,models/$(folder)/*.*))
 version = $(shell sed -n 's/^.define GICGEN_VERSION "\(.*\)"/\1/p' generator/base/version.h)
 # a place may have blanks in it, so only the shell takes it apart
 export DESTDIR PREFIX

@@ -251,7 +251,7 @@ check 'what the demonstration needs, and neither MPI nor Fortran' \
 check 'the lines of apt-get are in its log' grep -q 'lines of apt-get' "$work/log/install.log"
 check 'and not on the screen' sh -c "! grep -q 'lines of apt-get' '$work/out' '$work/err'"
 # the package of every header, so that a header that came along with something else is noticed
-grep -rhE '^# *include <' --include='*.[ch]' "$root/generator" "$root/runtime" | grep -v -e dmumps_c -e windows.h -e '<hdf5.h>' -e '<cvode/' -e '<nvector/' -e '<sun' | sort -u >"$work/headers.c"
+grep -rhE '^# *include <' --include='*.[ch]' "$root/generator" "$root/runtime" | grep -v -e dmumps_c -e windows.h -e '<hdf5.h>' -e '<gic.h>' -e IpStdCInterface -e '<cvode/' -e '<nvector/' -e '<sun' | sort -u >"$work/headers.c"
 cc -std=c11 -D_POSIX_C_SOURCE=200809L -M "$work/headers.c" | grep -o '/usr/include/[^ ]*' >"$work/headers"
 check 'there are headers of libraries' grep -q 'yaml\.h' "$work/headers"
 xargs dpkg -S <"$work/headers" 2>&1 | sed 's/:.*//' | sort -u | grep -v '^linux-libc-dev$' >"$work/owners"
