@@ -28,7 +28,7 @@ static const char *const *engines_here(Pool *pool, int first)
             diag_note(pool_print(
                 pool, "%s: note: the engine %s is left out: it needs MUMPS (Debian: apt-get install %s; then make)\n",
                 program_place().source->path, engine_name[i], package));
-        else
+        else if (engine_is_whole(engine_name[i]))
             *end++ = engine_name[i];
     }
     return list;
@@ -46,7 +46,6 @@ static const Scene *read_scene(const Bench *bench, const char *path)
 {
     const Scene *scene = scene_read(bench->pool, path, bench->model, NULL, 0);
     scene_no_rig(scene);
-    scene_no_implicit(scene, "gicbench");
     scene_no_implicit(scene, "gicbench");
     return equilibrium_start(bench->pool, bench->model, scene, bench->options.solve);
 }

@@ -42,6 +42,11 @@ bool engine_known(const char *name)
     return engine_index(name) >= 0;
 }
 
+bool engine_is_whole(const char *name)
+{
+    return engine_opener[engine_index(name)] != no_engine;
+}
+
 bool engine_generates(const char *name)
 {
     Open *const open = engine_opener[engine_index(name)];
@@ -62,8 +67,7 @@ const Engine *engine_open(Pool *pool, const char *name, const Model *model, cons
 /* Implicit steps need derivatives. */
 bool engine_has_implicit(const char *name)
 {
-    return engine_generates(name) && engine_opener[engine_index(name)] != engine_tape &&
-           engine_opener[engine_index(name)] != no_engine;
+    return engine_generates(name) && engine_opener[engine_index(name)] != engine_tape && engine_is_whole(name);
 }
 
 static void check_implicit(Pool *pool, const char *name, const Scene *scene, const EngineOptions *options)

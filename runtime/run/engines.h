@@ -13,6 +13,9 @@
 extern const char *const engine_name[];
 bool engine_known(const char *name);
 
+/* True if it runs by itself, in any study; `page` has another engine beside it, in gicrun alone. */
+bool engine_is_whole(const char *name);
+
 /* True if it runs generated code; other engines interpret the model. */
 bool engine_generates(const char *name);
 
