@@ -29,7 +29,7 @@ turns() { awk -F, '{ n[$1] = $2 } END { v = 20; k = 1 / (-n["at_20.yaw_gain"] * 
 check 'a car that steers behind understeers' turns
 
 # tires without resistance roll without slip: slopes there are those of pure slips, whatever the other direction has (TIRES.md 6).
-# Lateral slopes 10 and 12.5 times the load are an understeer gradient of (1/10 - 1/12.5) / g, but for its pitch at rest of 7e-4 rad
+# Lateral slopes 10 and 12.5 times the load are an understeer gradient of (1/10 - 1/12.5) / g
 linear=$root/tests/data/manoeuvre/linear.veh
 run --sheet "$linear" -o "$work/linear.csv"
 gradient() { awk -F, '$1 ~ /understeer/ {k = 0.02 / 9.80665; n += 1; bad += ($2 / k - 1) ^ 2 > 1e-6} END {exit !(n == 3 && !bad)}' "$work/linear.csv"; }
@@ -37,7 +37,7 @@ check 'the stiffness at slip zero is that of lateral slip' gradient
 # whatever the pitch at which it rests, 0.023 rad: the road is level. That tires lean and stand elsewhere changes less than 1 percent;
 # a vertical velocity of 0.023 times the speed would change loads by half
 for lengths in '-0.0756 -0.1205' '-0.1356 -0.0605'; do
-    sed "s/free: -0.1056/free: ${lengths% *}/; s/free: -0.0905/free: ${lengths#* }/; s/damping: 200,/damping: 2000,/" "$linear" >"$work/pitched.veh"
+    sed "s/free: -0.10773/free: ${lengths% *}/; s/free: -0.0905/free: ${lengths#* }/; s/damping: 200,/damping: 2000,/" "$linear" >"$work/pitched.veh"
     run --sheet "$work/pitched.veh" -o "$work/linear.csv"
     pitched() { awk -F, '$1 == "pitch" {pitch = $2 ^ 2} $1 ~ /understeer/ {k = 0.02 / 9.80665; n += 1; bad += ($2 / k - 1) ^ 2 > 1e-4}
         END {exit !(n == 3 && !bad && pitch > 0.022 ^ 2)}' "$work/linear.csv"; }
