@@ -121,7 +121,7 @@ scene 'initial: {velocity: [2, 0, 0], angular_velocity: [0, 0, 3]}' >"$work/turn
 run --modes "$work/top.veh" "$work/turning.scene"
 check 'a velocity that turns is no steady one' prints 'the largest acceleration is -6 m/s^2 or rad/s^2 of y, then 0'
 run --modes "$root/models/hmmwv.veh" -o -
-check 'CSV on standard output, and nothing else' [ "$(awk -F, 'NF != 22' "$work/out" | wc -l)" -eq 0 ]
+check 'CSV on standard output, and nothing else' [ "$(awk -F, 'NR == 1 && /^real / {n = NF} NF != n' "$work/out" | wc -l)" -eq 0 ]
 
 # with tires: yaw and sideslip of a bicycle with the same axles; what moves is named
 scene 'initial: {speed: 20}' >"$work/moving.scene"
