@@ -88,6 +88,9 @@ static bool goes_straight(Work *w, const double *from, const double *to, int s)
 {
     const double rounding = 1e-12;
     double J[w->n * w->n];
+    for (int i = 0; i < w->connections; ++i)
+        if (w->connection[i].slope) /* a formula: bodies may go a long way for a small one of its coordinates */
+            return false;
     for (int i = 0; i < 7 * w->first->bodies; ++i)
         if (i % 7 >= 3 && !(fabs(to[i] - from[i]) <= rounding))
             return false;
@@ -109,13 +112,14 @@ bool subset_converge(Work *w, double *q, int s, const double *slack)
 {
     const int iterations = 12;
     const double converged = 1e-12, leap = 0.5; /* a larger correction may end in another assembly mode */
+    const double longest = 1e7;                 /* further away too few digits are left of places */
     double start[7 * w->first->bodies], far = 0;
     memcpy(start, q, sizeof start);
     for (int i = 0; i < iterations; ++i) {
         subset_set_poses(w, q, s);
         dag_evaluate(w->dag, s, 1);
         double step = correct_sample(w, q, s, slack);
-        if (!(step < leap) && !(i == 0 && isfinite(step) && goes_straight(w, start, q, s)))
+        if (!(step < leap) && !(i == 0 && step < longest && goes_straight(w, start, q, s)))
             return false;
         for (int j = 0; j < 7 * w->first->bodies; ++j)
             far = fmax(far, fabs(q[j]) / w->size);

@@ -205,7 +205,7 @@ mistake 2 "0 or more, unlike '-1'" --linearize --at -1 "$car" "$work/waves.scene
 mistake 2 "0 or more, unlike 'soon'" --linearize --at soon "$car" "$work/waves.scene" -o "$work/car.npz"
 mistake 2 'no scene given' --linearize --at 1 "$car" -o "$work/car.npz"
 mistake 2 '\-\-at goes with --linearize' --modes --at 1 "$car" "$work/waves.scene"
-mistake 2 'one of --eval, --equilibrium, --modes, --linearize, --trim, --gradient, --identify, --kc' --modes --linearize "$car"
+mistake 2 'one of --eval, --equilibrium, --modes, --linearize, --trim, --gradient, --identify, --optimize, --kc' --modes --linearize "$car"
 mistake 2 "must end in .csv, .npz or .mat, unlike '" --linearize "$car" -o "$work/car.txt"
 mistake 2 "does not go with --engine 'gic'" --linearize --engine gic "$car" -o "$work/car.npz"
 mistake 1 'remedy: --at takes a time from 0 to 1$' --linearize --at 1.5 "$car" "$work/waves.scene" -o "$work/car.npz"
