@@ -161,9 +161,9 @@ for way in 0 1e-25 -1e-25 1 -18 18; do
     columns rest spring_f_l spring_f_r spring_r_l spring_r_r | awk '{v[NR] = $1}
         END {exit !((v[1] - v[2])^2 < 1e-24 && (v[3] - v[4])^2 < 1e-24)}'
     verdict $? "speed $way: left is as right"
-    # what is printed for scenes starts there as well
+    # what is printed for scenes starts there as well; on the level road a speed from an equilibrium is level
     run --equilibrium "$car" still.scene
-    { scene 0; sed -n '/^initial:/,$p' out; echo "  speed: $way"; echo 'outputs: [chassis, chassis_orientation]'; } >printed.scene
+    { scene 0; sed -n '/^initial:/,$p' out; echo "  velocity: [$way, 0, 0]"; echo 'outputs: [chassis, chassis_orientation]'; } >printed.scene
     "$gicrun" -q "$car" printed.scene -o printed >out 2>err
     cut -d, -f1-8 results | sed -n '$p' | tr , '\n' >a
     cut -d, -f1-8 printed | sed -n '$p' | tr , '\n' >b
