@@ -403,7 +403,7 @@ check 'unknown kind of picture: usage error' exits 2
 run --engine swift "$work/carts.veh" "$work/swing.scene"
 check 'an engine that there is not: usage error' exits 2
 check 'those that there are' [ "$(sed -n 's/^  remedy: one of //p' "$work/err" | sed 's/, /\n/g' | sort | xargs)" = \
-    'auto cc gcp1 gcp2 gic tape tcc' ]
+    'auto cc gcp1 gcp2 gic page tape tcc' ]
 run -h
 check 'help goes to standard output' grep -q '^usage: gicrun' "$work/out"
 
