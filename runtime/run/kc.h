@@ -88,6 +88,8 @@ typedef struct Kc {
  * such axle. */
 Kc *kc_open(Pool *pool, const Model *model, const Scene *scene, Solve solve, const char *axle, bool join);
 
+/* Add a hidden output to a model that is to be measured; returns the place of its first component among all. */
+int kc_watch(Pool *pool, Model *model, Output output);
 /* Warn once, where wheel rates are computed, of bushings that they leave out. */
 void kc_warn(const Kc *kc);
 /* Axles of the base's unit: the first and the last one. */

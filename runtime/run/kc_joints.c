@@ -19,19 +19,6 @@ enum { WRENCH = 6 };
 
 /* ---- the model ------------------------------------------------------------------------------------------ */
 
-/* A hidden output; returns the place of its first component. */
-static int watch(Pool *pool, Model *model, Output output)
-{
-    const int at = model->output_components;
-    output.name = "kc";
-    output.hidden = true;
-    for (int i = 0; i < output.count; ++i)
-        output.component[i] = output.unit[i] = "";
-    *POOL_PUSH(pool, model->output, model->outputs) = output;
-    model->output_components += output.count;
-    return at;
-}
-
 /* An element of the same place, whose force is an input of its own. */
 static void twin(Pool *pool, Model *model, const Force *element)
 {
@@ -76,17 +63,17 @@ static Model *prepare(KcJoints *k, Pool *pool, const Model *model)
             *POOL_PUSH(pool, copy->port, copy->ports) = port;
         }
     for (int j = 0; j < model->joints; ++j)
-        watch(pool, copy, (Output){.type = OUTPUT_REACTION, .index = j, .in = BODY_GROUND, .count = 6});
+        kc_watch(pool, copy, (Output){.type = OUTPUT_REACTION, .index = j, .in = BODY_GROUND, .count = 6});
     k->drive = copy->output_components;
     for (int c = 0; c < model->coordinates; ++c)
-        watch(pool, copy, (Output){.type = OUTPUT_DRIVE_FORCE, .index = c, .count = 1});
+        kc_watch(pool, copy, (Output){.type = OUTPUT_DRIVE_FORCE, .index = c, .count = 1});
     for (int j = 0; j < model->joints; ++j) {
         const Joint *joint = &model->joint[j];
         k->rod[j] = joint->type == JOINT_DISTANCE ? copy->output_components : -1;
         for (int end = 0; end < 2 && k->rod[j] >= 0; ++end) {
             Output output = {.type = OUTPUT_POSITION, .body = joint->body[end], .in = BODY_GROUND, .count = 3};
             copy3(joint->point[end], output.point);
-            watch(pool, copy, output);
+            kc_watch(pool, copy, output);
         }
     }
     return copy;

@@ -322,11 +322,7 @@ void kc_joints_report(Pool *pool, const Model *model, const Scene *scene, const 
         const Carrying other = open_all(pool, model_of_other, NULL, request, &study_of_other);
         Sheet sheet = sheet_of(&c, model);
         const Sheet beside = sheet_of(&other, model_of_other);
-        sheet_compare(&sheet, &beside, name);
-        if (request->results)
-            sheet_csv(&sheet, request->results);
-        else
-            sheet_print(&sheet, ": joints, models/KC.md defines it");
+        sheet_beside(&sheet, &beside, name, request->results, ": joints, models/KC.md defines it");
         return;
     }
     if (request->results)

@@ -17,8 +17,7 @@ static const double nothing = 1e-9;
 
 /* ---- outputs and force elements that measure ------------------------------------------------------------ */
 
-/* A hidden output of a few components; returns the place of the first one. */
-static int watch(Pool *pool, Model *model, Output output)
+int kc_watch(Pool *pool, Model *model, Output output)
 {
     const int at = model->output_components;
     output.name = "kc";
@@ -34,12 +33,12 @@ static int watch_point(Pool *pool, Model *model, OutputType type, int body, cons
 {
     Output output = {.type = type, .body = body, .in = BODY_GROUND, .count = 3};
     copy3(point, output.point);
-    return watch(pool, model, output);
+    return kc_watch(pool, model, output);
 }
 
 static int watch_force(Pool *pool, Model *model, int force)
 {
-    return watch(pool, model, (Output){.type = OUTPUT_FORCE, .index = force, .count = 1});
+    return kc_watch(pool, model, (Output){.type = OUTPUT_FORCE, .index = force, .count = 1});
 }
 
 /* A force element whose tension is the length between two points or its rate, or the angle about an axis or its rate:
@@ -66,10 +65,10 @@ static void watch_rubber(Kc *kc, Model *model, const Force *force)
             continue;
         rubber.place[end] = watch_point(kc->pool, model, OUTPUT_POSITION, body, force->point[end]);
         rubber.velocity[end] = watch_point(kc->pool, model, OUTPUT_VELOCITY, body, force->point[end]);
-        rubber.turn[end] = watch(
+        rubber.turn[end] = kc_watch(
             kc->pool, model, (Output){.type = OUTPUT_ANGULAR_VELOCITY, .body = body, .in = BODY_GROUND, .count = 3});
-        rubber.orientation[end] =
-            watch(kc->pool, model, (Output){.type = OUTPUT_ORIENTATION, .body = body, .in = BODY_GROUND, .count = 4});
+        rubber.orientation[end] = kc_watch(
+            kc->pool, model, (Output){.type = OUTPUT_ORIENTATION, .body = body, .in = BODY_GROUND, .count = 4});
     }
     *POOL_PUSH(kc->pool, kc->rubber, kc->rubbers) = rubber;
 }
@@ -126,8 +125,9 @@ static KcWheel watch_wheel(Kc *kc, Model *model, const Wheel *wheel)
         .centre = watch_point(kc->pool, model, OUTPUT_POSITION, wheel->body, wheel->center),
         .velocity = watch_point(kc->pool, model, OUTPUT_VELOCITY, wheel->body, wheel->center),
         .tip = watch_point(kc->pool, model, OUTPUT_POSITION, wheel->body, tip),
-        .turn = watch(kc->pool, model,
-                      (Output){.type = OUTPUT_ANGULAR_VELOCITY, .body = wheel->body, .in = BODY_GROUND, .count = 3})};
+        .turn =
+            kc_watch(kc->pool, model,
+                     (Output){.type = OUTPUT_ANGULAR_VELOCITY, .body = wheel->body, .in = BODY_GROUND, .count = 3})};
 }
 
 /* ---- axles ---------------------------------------------------------------------------------------------- */

@@ -253,11 +253,7 @@ static void report_loads(Pool *pool, const Model *model, const Scene *scene, con
         Sheet sheet = kc_loads_sheet(pool, model, kc);
         const Sheet other = kc_loads_sheet(pool, model_of_other,
                                            kc_open(pool, model_of_other, NULL, request->solve, request->axle, true));
-        sheet_compare(&sheet, &other, name);
-        if (request->results)
-            sheet_csv(&sheet, request->results);
-        else
-            sheet_print(&sheet, ": compliance, models/KC.md defines it");
+        sheet_beside(&sheet, &other, name, request->results, ": compliance, models/KC.md defines it");
         return;
     }
     if (request->results) {

@@ -90,6 +90,9 @@ const char *sheet_place_of(Pool *pool, const KcAxle *axle, int wheel);
 /* The same file: numbers of another one, which is called `name`, beside those of the same places or names; then those
  * that only the other one has. */
 void sheet_compare(Sheet *sheet, const Sheet *other, const char *name);
+/* sheet_report.c: both, as CSV into the file `results`, NULL: as a table for people, after whose title `about` stands.
+ */
+void sheet_beside(Sheet *sheet, const Sheet *other, const char *name, const char *results, const char *about);
 /* The numbers for people, the title after the names, and as CSV. */
 void sheet_print(const Sheet *sheet, const char *title);
 /* Its notes, after the numbers for people, or on standard error where these go to a file. */

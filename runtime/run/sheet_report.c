@@ -209,6 +209,15 @@ Sheet sheet_study(Pool *pool, const Model *model, const Scene *scene, const Requ
     return sheet;
 }
 
+void sheet_beside(Sheet *sheet, const Sheet *other, const char *name, const char *results, const char *about)
+{
+    sheet_compare(sheet, other, name);
+    if (results)
+        sheet_csv(sheet, results);
+    else
+        sheet_print(sheet, about);
+}
+
 void sheet_report(Pool *pool, const Model *model, const Scene *scene, const Request *request)
 {
     Sheet sheet = sheet_study(pool, model, scene, request);
