@@ -86,7 +86,7 @@ cut_short() {
     child=$!
     while kill -0 $child 2>/dev/null && [ "$(cat "$journal" 2>/dev/null | wc -l)" -lt $more ]; do sleep 0.01; done
     kill "-$2" $child 2>/dev/null
-    wait $child 2>/dev/null
+    wait "$child" 2>/dev/null
 }
 for i in 5 2 8 1; do cut_short $i KILL; done
 : >"$work/asked"
@@ -139,13 +139,13 @@ for try in 1 2 3 4 5 6 7 8 9 10; do
     first=$(process_of 6 "$work/plan")
     # shellcheck disable=SC2086  # words
     [ -n "$first" ] && kill -STOP $first 2>/dev/null && break
-    wait $child
+    wait "$child"
 done
 (task 6) >"$work/out" 2>"$work/second"
 check "a second process at the same part, the first stopped after $try tries" grep -q "another gicsweep is writing .*/part_6.journal" "$work/second"
 # shellcheck disable=SC2086  # words
 kill -CONT $first
-wait $child
+wait "$child"
 check "the first makes it" once "$work/plan"
 
 # ---- files that are not what they should be
