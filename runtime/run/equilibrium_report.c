@@ -387,9 +387,11 @@ void equilibrium_report(Pool *pool, const Engine *engine, const Scene *scene, co
         equilibrium_row(pool, found, request->results);
         return;
     }
-    Text table = {.pool = pool};
-    print_table(&table, engine, found, residual);
-    diag_text(table.s);
+    if (!request->results || !request->quiet) {
+        Text table = {.pool = pool};
+        print_table(&table, engine, found, residual);
+        diag_text(table.s);
+    }
     /* last, so that a file is there only where nothing failed */
     if (request->results)
         equilibrium_row(pool, found, request->results);

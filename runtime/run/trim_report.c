@@ -279,7 +279,7 @@ void trim_report(Pool *pool, const Model *model, const Scene *scene, const Reque
 {
     const Trim *trim = find(pool, model, scene, request);
     const char *path = request->results;
-    if (!path || strcmp(path, "-") != 0) {
+    if (!path || (strcmp(path, "-") != 0 && !request->quiet)) {
         Text out = {.pool = pool};
         text_print(&out, "%s: %s, found in %d steps\n", model->name, trim_text(pool, &trim->goal), trim->steps);
         print_motion(&out, trim);

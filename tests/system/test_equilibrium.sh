@@ -206,6 +206,9 @@ check 'and called unstable' says 'unstable: eigenvalue 3.132'
 check 'outside its range' says "coordinate 'angle' leaves its range"
 run -q --equilibrium "$root/models/pendulum.veh" "$work/a.scene"
 check 'unless it shall be quiet' exits 0
+check 'when the table, asked for alone, is printed' test -s "$work/out"
+run -q --equilibrium "$root/models/pendulum.veh" "$work/a.scene" -o "$work/rest"
+check 'and nothing, where the result goes to a file' test ! -s "$work/out"
 
 # a little beside its tip, where Newton's method would climb back, it falls and hangs: at pi/2
 for angle in 4.64 4.70 4.78; do

@@ -20,6 +20,9 @@ printf 'gicscene: 1\nduration: 0.1\nstep: 0.005\n' | cat - "$work/start" >"$work
 run -q "$car" "$work/printed.scene"
 check 'what is printed is the start of a scene' exits 0
 run --trim "$car" speed=10 lateral=2.5 -o "$work/state.csv"
+cp "$work/state.csv" "$work/told.csv"
+run -q --trim "$car" speed=10 lateral=2.5 -o "$work/state.csv"
+check 'quiet: nothing but the file' sh -c '[ ! -s "$1/out" ] && cmp -s "$1/state.csv" "$1/told.csv"' sh "$work"
 run -q --eval "$work/state.csv" "$car" -o "$work/rates.csv"
 check 'a row that --eval reads' exits 0
 run --trim "$car" speed=10 -o "$work/a.scene"
