@@ -16,6 +16,7 @@
 #include <string.h>
 
 #include <gsl/gsl_blas.h>
+#include <gsl/gsl_complex_math.h>
 #include <gsl/gsl_eigen.h>
 #include <gsl/gsl_linalg.h>
 
@@ -89,24 +90,21 @@ static Deflation deflate(const gsl_matrix *A)
 
 /* ---- eigenvalues ---------------------------------------------------------------------------------------- */
 
-/* Eigenvalues and right eigenvectors of A, or of its transpose. */
+/* Eigenvalues and right eigenvectors of A. */
 typedef struct Spectrum {
     gsl_vector_complex *value;
     gsl_matrix_complex *vector; /* by columns */
 } Spectrum;
 
 /* False: they could not be found. */
-static bool spectrum_find(const gsl_matrix *A, bool transposed, Spectrum *s)
+static bool spectrum_find(const gsl_matrix *A, Spectrum *s)
 {
     const size_t n = A->size1;
     *s = (Spectrum){gsl_vector_complex_alloc(n), gsl_matrix_complex_alloc(n, n)};
     gsl_matrix *copy = gsl_matrix_alloc(n, n);
     gsl_eigen_nonsymmv_workspace *work = gsl_eigen_nonsymmv_alloc(n);
     gsl_eigen_nonsymmv_params(1, work);
-    if (transposed)
-        gsl_matrix_transpose_memcpy(copy, A);
-    else
-        gsl_matrix_memcpy(copy, A);
+    gsl_matrix_memcpy(copy, A);
     const bool found = gsl_eigen_nonsymmv(copy, s->value, s->vector, work) == GSL_SUCCESS;
     gsl_eigen_nonsymmv_free(work);
     gsl_matrix_free(copy);
@@ -119,105 +117,193 @@ static void spectrum_free(Spectrum *s)
     gsl_matrix_complex_free(s->vector);
 }
 
-/* Index of the eigenvalue nearest to `value`. */
-static size_t spectrum_nearest(const Spectrum *s, gsl_complex value)
-{
-    size_t best = 0;
-    double least = INFINITY;
-    for (size_t i = 0; i < s->value->size; ++i) {
-        const gsl_complex other = gsl_vector_complex_get(s->value, i);
-        const double away = hypot(GSL_REAL(other) - GSL_REAL(value), GSL_IMAG(other) - GSL_IMAG(value));
-        if (away < least) {
-            least = away;
-            best = i;
-        }
-    }
-    return best;
-}
-
 /* Left eigenvectors by columns, in the order of the right ones: the rows of the inverse of their matrix, so that those
- * of equal eigenvalues, which are any of a subspace, belong to each other too. Where right ones are dependent but for
- * rounding, as of a critically damped motion, there is no inverse: those of the transposed matrix, by nearest values.
- * False: they could not be found. */
-static bool left_find(const gsl_matrix *A, const Spectrum *right, gsl_matrix_complex *left)
+ * of equal eigenvalues, which are any of a subspace, belong to each other too. NULL: there is no inverse, for right
+ * ones are dependent but for rounding, as of a critically damped motion. */
+static gsl_matrix_complex *left_find(const Spectrum *right)
 {
-    static const double dependent = 1e-10; /* the least pivot of unit vectors */
-    const size_t n = A->size1;
-    gsl_matrix_complex *lu = gsl_matrix_complex_alloc(n, n);
+    static const double dependent = 1e-6; /* the least pivot of unit vectors; rounding of double eigenvalues: 1e-8 */
+    const size_t n = right->vector->size1;
+    gsl_matrix_complex *lu = gsl_matrix_complex_alloc(n, n), *left = NULL;
     gsl_permutation *order = gsl_permutation_alloc(n);
     int sign;
     double least = INFINITY;
     gsl_matrix_complex_memcpy(lu, right->vector);
     gsl_linalg_complex_LU_decomp(lu, order, &sign);
-    for (size_t i = 0; i < n; ++i) {
-        const gsl_complex pivot = gsl_matrix_complex_get(lu, i, i);
-        least = fmin(least, hypot(GSL_REAL(pivot), GSL_IMAG(pivot)));
-    }
-    bool found;
+    for (size_t i = 0; i < n; ++i)
+        least = fmin(least, gsl_complex_abs(gsl_matrix_complex_get(lu, i, i)));
     if (least > dependent) {
-        found = gsl_linalg_complex_LU_invert(lu, order, left) == GSL_SUCCESS;
+        left = gsl_matrix_complex_alloc(n, n);
+        gsl_linalg_complex_LU_invert(lu, order, left);
         gsl_matrix_complex_transpose(left);
-    } else {
-        Spectrum other;
-        found = spectrum_find(A, true, &other);
-        for (size_t k = 0; k < n; ++k) {
-            const size_t near = spectrum_nearest(&other, gsl_vector_complex_get(right->value, k));
-            for (size_t i = 0; i < n; ++i)
-                gsl_matrix_complex_set(left, i, k, gsl_matrix_complex_get(other.vector, i, near));
-        }
-        spectrum_free(&other);
     }
     gsl_permutation_free(order);
     gsl_matrix_complex_free(lu);
-    return found;
+    return left;
 }
 
-/* A vector of the deflated system in all numbers: real and imaginary parts [count]. */
-static void expand(const Deflation *d, const gsl_matrix_complex *vectors, size_t k, gsl_vector *part[2])
+/* X becomes an orthonormal basis of its columns, by Gram and Schmidt, twice. */
+static void make_orthonormal(gsl_matrix_complex *X)
 {
-    for (int p = 0; p < 2; ++p) {
-        gsl_vector *small = gsl_vector_alloc(d->A->size1);
-        for (size_t i = 0; i < small->size; ++i) {
-            const gsl_complex z = gsl_matrix_complex_get(vectors, i, k);
-            gsl_vector_set(small, i, p ? GSL_IMAG(z) : GSL_REAL(z));
+    for (size_t k = 0; k < X->size2; ++k) {
+        gsl_vector_complex_view x = gsl_matrix_complex_column(X, k);
+        for (size_t i = 0; i < 2 * k; ++i) {
+            gsl_complex along;
+            const gsl_vector_complex_view y = gsl_matrix_complex_column(X, i % k);
+            gsl_blas_zdotc(&y.vector, &x.vector, &along);
+            gsl_blas_zaxpy(gsl_complex_negative(along), &y.vector, &x.vector);
         }
-        gsl_blas_dgemv(CblasNoTrans, 1, d->basis, small, 0, part[p]);
-        gsl_vector_free(small);
+        gsl_blas_zdscal(1 / gsl_blas_dznrm2(&x.vector), &x.vector);
     }
 }
 
-/* Participation of every number in a mode: |left_i right_i|, which knows no units, summed over places and their rates,
- * relative to the sum. Left eigenvectors have no components along neutral directions; those of a right eigenvector
- * follow from A, one Jordan layer at a time. */
-static void find_shares(const Linear *linear, const gsl_matrix *A, const Deflation *d, const Spectrum *right, size_t k,
-                        const gsl_matrix_complex *left, Mode *mode)
+/* A basis, by columns, of what A (or its transpose) maps into itself with the `size` eigenvalues nearest to
+ * `centre`: by inverse iteration about a number beside them. */
+static gsl_matrix_complex *invariant_subspace(const gsl_matrix *A, bool transposed, gsl_complex centre, size_t size)
 {
-    const size_t count = (size_t)linear->count, places = (size_t)linear->places;
-    gsl_vector *r[2] = {gsl_vector_alloc(count), gsl_vector_alloc(count)}, *moved = gsl_vector_alloc(count);
-    gsl_vector *l[2] = {gsl_vector_alloc(count), gsl_vector_alloc(count)};
-    double sum = 0;
-    expand(d, right->vector, k, r);
-    expand(d, left, k, l);
-    for (int layer = 0; layer < d->layers; ++layer)
-        for (int p = 0; p < 2; ++p) {
-            gsl_blas_dgemv(CblasNoTrans, 1, A, r[p], 0, moved);
-            gsl_vector_memcpy(r[p], moved);
+    enum { ITERATIONS = 40 }; /* the others shrink by 3 or more in each, but where they are as near */
+    const double beside = 0.01;
+    const size_t n = A->size1;
+    const gsl_complex shift = gsl_complex_mul(centre, gsl_complex_rect(1 + beside, beside / 3));
+    gsl_matrix_complex *lu = gsl_matrix_complex_alloc(n, n), *X = gsl_matrix_complex_alloc(n, size);
+    gsl_permutation *order = gsl_permutation_alloc(n);
+    int sign;
+    for (size_t i = 0; i < n; ++i)
+        for (size_t j = 0; j < n; ++j) {
+            const gsl_complex a = gsl_complex_rect(transposed ? gsl_matrix_get(A, j, i) : gsl_matrix_get(A, i, j), 0);
+            gsl_matrix_complex_set(lu, i, j, i == j ? gsl_complex_sub(a, shift) : a);
         }
+    gsl_linalg_complex_LU_decomp(lu, order, &sign);
+    for (size_t i = 0; i < n; ++i)
+        for (size_t k = 0; k < size; ++k) /* any start that has something of each */
+            gsl_matrix_complex_set(X, i, k,
+                                   gsl_complex_rect(cos(1 + (double)(i * size + k)), sin(2 + (double)(i + k * n))));
+    for (int iteration = 0; iteration < ITERATIONS; ++iteration) {
+        make_orthonormal(X);
+        for (size_t k = 0; k < size; ++k) {
+            gsl_vector_complex_view x = gsl_matrix_complex_column(X, k);
+            gsl_linalg_complex_LU_svx(lu, order, &x.vector);
+        }
+    }
+    make_orthonormal(X);
+    gsl_permutation_free(order);
+    gsl_matrix_complex_free(lu);
+    return X;
+}
+
+/* Bases, by columns, of what A maps into itself with eigenvalue k of the spectrum and all that are as good as equal to
+ * it, and of the same of its transpose. */
+static void group_find(const gsl_matrix *A, const Spectrum *spectrum, size_t k, gsl_matrix_complex *basis[2])
+{
+    const double as_good_as_equal = 1e-3; /* rounding scatters eigenvalues of multiplicity 5 by so much */
+    const gsl_complex value = gsl_vector_complex_get(spectrum->value, k);
+    size_t size = 0;
+    gsl_complex sum = gsl_complex_rect(0, 0);
+    for (size_t i = 0; i < spectrum->value->size; ++i) {
+        const gsl_complex other = gsl_vector_complex_get(spectrum->value, i);
+        if (gsl_complex_abs(gsl_complex_sub(other, value)) <= as_good_as_equal * gsl_complex_abs(value)) {
+            ++size;
+            sum = gsl_complex_add(sum, other);
+        }
+    }
+    const gsl_complex centre = gsl_complex_div_real(sum, (double)size);
+    basis[0] = invariant_subspace(A, false, centre, size);
+    basis[1] = invariant_subspace(A, true, centre, size);
+}
+
+/* Vectors of the deflated system, by columns, in all numbers: [count][columns]. Those of the transposed matrix have no
+ * components along neutral directions; those of the matrix follow from A, one Jordan layer at a time. */
+static gsl_matrix_complex *expand(const gsl_matrix *A, const Deflation *d, const gsl_matrix_complex *vectors,
+                                  bool transposed)
+{
+    gsl_matrix_complex *all = gsl_matrix_complex_alloc(A->size1, vectors->size2);
+    gsl_vector *small = gsl_vector_alloc(vectors->size1), *x = gsl_vector_alloc(A->size1),
+               *moved = gsl_vector_alloc(A->size1);
+    for (size_t k = 0; k < vectors->size2; ++k)
+        for (int p = 0; p < 2; ++p) {
+            gsl_vector_complex_const_view from = gsl_matrix_complex_const_column(vectors, k);
+            gsl_vector_complex_view to = gsl_matrix_complex_column(all, k);
+            gsl_vector_const_view part =
+                p ? gsl_vector_complex_const_imag(&from.vector) : gsl_vector_complex_const_real(&from.vector);
+            gsl_vector_view into = p ? gsl_vector_complex_imag(&to.vector) : gsl_vector_complex_real(&to.vector);
+            gsl_vector_memcpy(small, &part.vector);
+            gsl_blas_dgemv(CblasNoTrans, 1, d->basis, small, 0, x);
+            for (int layer = 0; layer < d->layers && !transposed; ++layer) {
+                gsl_blas_dgemv(CblasNoTrans, 1, A, x, 0, moved);
+                gsl_vector_memcpy(x, moved);
+            }
+            gsl_vector_memcpy(&into.vector, x);
+        }
+    gsl_vector_free(moved);
+    gsl_vector_free(x);
+    gsl_vector_free(small);
+    return all;
+}
+
+/* Participation of every number in what right vectors R and left ones L span, columns each: the diagonal of the
+ * projection R (L^T R)^-1 L^T, which knows no units and does not depend on the bases, summed over places and their
+ * rates, relative to the sum. */
+static void find_shares(const Linear *linear, const gsl_matrix_complex *R, const gsl_matrix_complex *L, Mode *mode)
+{
+    const size_t count = (size_t)linear->count, places = (size_t)linear->places, size = R->size2;
+    const gsl_complex one = gsl_complex_rect(1, 0), none = gsl_complex_rect(0, 0);
+    gsl_matrix_complex *lu = gsl_matrix_complex_alloc(size, size), *inverse = gsl_matrix_complex_alloc(size, size),
+                       *left = gsl_matrix_complex_alloc(size, count);
+    gsl_permutation *order = gsl_permutation_alloc(size);
+    int sign;
+    double sum = 0;
+    gsl_blas_zgemm(CblasTrans, CblasNoTrans, one, L, R, none, lu);
+    gsl_linalg_complex_LU_decomp(lu, order, &sign);
+    gsl_linalg_complex_LU_invert(lu, order, inverse);
+    gsl_blas_zgemm(CblasNoTrans, CblasTrans, one, inverse, L, none, left);
     for (size_t i = 0; i < count; ++i) {
-        const double part = hypot(gsl_vector_get(r[0], i), gsl_vector_get(r[1], i)) *
-                            hypot(gsl_vector_get(l[0], i), gsl_vector_get(l[1], i));
-        mode->share[i < places ? i : i - places] += part;
-        sum += part;
+        gsl_complex diagonal = none;
+        for (size_t k = 0; k < size; ++k)
+            diagonal = gsl_complex_add(
+                diagonal, gsl_complex_mul(gsl_matrix_complex_get(R, i, k), gsl_matrix_complex_get(left, k, i)));
+        mode->share[i < places ? i : i - places] += gsl_complex_abs(diagonal);
+        sum += gsl_complex_abs(diagonal);
     }
     for (size_t i = 0; i < count - places && sum > 0; ++i)
         mode->share[i] /= sum;
-    for (int p = 0; p < 2; ++p) {
-        for (size_t i = 0; i < places; ++i)
-            mode->shape[(size_t)p * places + i] = gsl_vector_get(r[p], i);
-        gsl_vector_free(r[p]);
-        gsl_vector_free(l[p]);
+    gsl_permutation_free(order);
+    gsl_matrix_complex_free(left);
+    gsl_matrix_complex_free(inverse);
+    gsl_matrix_complex_free(lu);
+}
+
+static gsl_matrix_complex *column_of(const gsl_matrix_complex *vectors, size_t k)
+{
+    gsl_matrix_complex *column = gsl_matrix_complex_alloc(vectors->size1, 1);
+    const gsl_matrix_complex_const_view view = gsl_matrix_complex_const_submatrix(vectors, 0, k, vectors->size1, 1);
+    gsl_matrix_complex_memcpy(column, &view.matrix);
+    return column;
+}
+
+/* Shares and shape of the mode of eigenvalue k; left: NULL where eigenvectors are dependent. */
+static void describe(const Linear *linear, const gsl_matrix *A, const Deflation *d, const Spectrum *right,
+                     const gsl_matrix_complex *left, size_t k, Mode *mode)
+{
+    const size_t places = (size_t)linear->places;
+    gsl_matrix_complex *vector = column_of(right->vector, k), *shape = expand(A, d, vector, false);
+    gsl_matrix_complex *group[2] = {vector};
+    if (left)
+        group[1] = column_of(left, k);
+    else
+        group_find(d->A, right, k, group);
+    gsl_matrix_complex *R = expand(A, d, group[0], false), *L = expand(A, d, group[1], true);
+    find_shares(linear, R, L, mode);
+    for (size_t i = 0; i < places; ++i) {
+        mode->shape[i] = GSL_REAL(gsl_matrix_complex_get(shape, i, 0));
+        mode->shape[places + i] = GSL_IMAG(gsl_matrix_complex_get(shape, i, 0));
     }
-    gsl_vector_free(moved);
+    gsl_matrix_complex_free(L);
+    gsl_matrix_complex_free(R);
+    gsl_matrix_complex_free(group[1]);
+    if (group[0] != vector)
+        gsl_matrix_complex_free(group[0]);
+    gsl_matrix_complex_free(shape);
+    gsl_matrix_complex_free(vector);
 }
 
 /* Slowest first. */
@@ -245,8 +331,8 @@ static const char *name_neutral(Pool *pool, const Linear *linear, const Deflatio
 static bool list_modes(Pool *pool, const Linear *linear, const gsl_matrix *A, const Deflation *d, Modes *modes)
 {
     Spectrum right;
-    gsl_matrix_complex *left = gsl_matrix_complex_alloc(d->A->size1, d->A->size1);
-    const bool found = spectrum_find(d->A, false, &right) && left_find(d->A, &right, left);
+    const bool found = spectrum_find(d->A, &right);
+    gsl_matrix_complex *left = found ? left_find(&right) : NULL;
     for (size_t k = 0; found && k < d->rest; ++k) {
         const gsl_complex value = gsl_vector_complex_get(right.value, k);
         const bool is_real = fabs(GSL_IMAG(value)) <= critical * fabs(GSL_REAL(value));
@@ -255,10 +341,11 @@ static bool list_modes(Pool *pool, const Linear *linear, const gsl_matrix *A, co
         Mode *mode = POOL_PUSH(pool, modes->mode, modes->count);
         *mode = (Mode){GSL_REAL(value), is_real ? 0 : GSL_IMAG(value), pool_alloc(pool, A->size1 * sizeof(double)),
                        pool_alloc(pool, 2 * A->size1 * sizeof(double))};
-        find_shares(linear, A, d, &right, k, left, mode);
+        describe(linear, A, d, &right, left, k, mode);
     }
     qsort(modes->mode, (size_t)modes->count, sizeof *modes->mode, by_size);
-    gsl_matrix_complex_free(left);
+    if (left)
+        gsl_matrix_complex_free(left);
     spectrum_free(&right);
     return found;
 }

@@ -195,6 +195,21 @@ for name in twins cab; do
     check "equal eigenvalues of $name" shares "$work/$name.csv"
 done
 
+# critically damped: eigenvectors of the fourfold -1 are dependent, and the shares are those of all four together; beside
+# another motion, which has no part in it. 1e-6: what rounding makes of a double eigenvalue is 1e-8
+critical() {
+    sed "s/coordinate: x, stiffness: 1, damping: 0.1/coordinate: x, stiffness: 1, damping: 2/; s/coordinate: y, stiffness: 1, damping: 0.1/coordinate: y, stiffness: $1, damping: $2/" \
+        "$work/twins.veh" >"$work/critical.veh"
+    run --modes -q "$work/critical.veh" -o "$work/critical.csv"
+    awk -F, -v own="$3" 'function off(a, b) { return a < b - 1e-6 || a > b + 1e-6 }
+        NR == 1 { for (i = 1; i <= NF; ++i) { if ($i == "share.x") x = i; if ($i == "share.y") y = i } next }
+        { real = !off($1, -1); n += real; if (off($x, real ? own : 0) || off($y, real ? 1 - own : 1)) bad = 1 }
+        END { exit bad || n != (own < 1 ? 4 : 2) }' "$work/critical.csv"
+}
+check 'two critically damped motions' critical 1 2 0.5
+check 'one beside an undamped one' critical 4 0 1
+check 'one beside a damped one' critical 4 1 1
+
 run --modes --eval "$work/states" "$root/models/hmmwv.veh"
 check '--modes and --eval are one too many' exits 2
 run --modes "$root/models/hmmwv.veh" --plot "$work/a.svg"
