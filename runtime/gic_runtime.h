@@ -55,7 +55,7 @@ typedef double gic_real;
     X(GIC_ERROR_MASS, -7, \
       "the mass matrix is not positive definite, or so near to singular that too few digits would be left") \
     X(GIC_ERROR_RESULT, -8, "a result is not a finite number") \
-    X(GIC_ERROR_ROAD, -9, "the road has no finite height under a wheel") \
+    X(GIC_ERROR_ROAD, -9, "the road has no finite height, or a friction that is not above 0, under a wheel") \
     X(GIC_ERROR_ABI, -10, "generated code and runtime have different versions or number types") \
     X(GIC_ERROR_GEOMETRY, -11, "a parameter makes the geometry impossible") \
     X(GIC_ERROR_TUNED, -12, "a geometric parameter is not the one that the geometry is for: set up with it") \
@@ -81,7 +81,7 @@ const char *gic_status_text(int status);
 /* ---- road ------------------------------------------------------------------------------------- */
 
 /* A road z = h(x, y), world frame, metres: one of gic_road.h or your own. `height` sets out[0] = h, out[1] = dh/dx,
- * out[2] = dh/dy. `friction`: at a place, relative to the road that the tires were measured on; NULL: 1 everywhere.
+ * out[2] = dh/dy. `friction`: at a place, relative to the road that the tires were measured on, above 0; NULL: 1 everywhere.
  * `lane` is the instance's lane index. Data of a road follow this head in the user's own structure. */
 typedef struct gic_road {
     void (*height)(const struct gic_road *road, int32_t lane, gic_real time, gic_real x, gic_real y, gic_real out[3]);

@@ -180,17 +180,11 @@ static void write_assume_fast(void *context, Text *out, int indent)
     write_batch_assume(g, out, indent, ABOUT_FAST);
 }
 
-static const Insertion fast_point[] = {{"friction", write_friction},
-                                       {"wheel classes", write_wheel_classes},
-                                       {"link", write_link},
-                                       {"powertrain", write_batch_powertrain},
-                                       {"arrays", write_arrays},
-                                       {"torque", write_torque},
-                                       {"wheel calls", write_wheel_calls},
-                                       {"drive", write_batch_drive},
-                                       {"assume fast", write_assume_fast},
-                                       {"images", write_batch_images},
-                                       {NULL, NULL}};
+static const Insertion fast_point[] = {
+    {"friction", write_friction},       {"wheel classes", write_wheel_classes}, {"link", write_link},
+    {"condition", write_across_lane},   {"powertrain", write_batch_powertrain}, {"arrays", write_arrays},
+    {"torque", write_torque},           {"wheel calls", write_wheel_calls},     {"drive", write_batch_drive},
+    {"assume fast", write_assume_fast}, {"images", write_batch_images},         {NULL, NULL}};
 
 const Insertions batch_fast_points = {
     (const char *const[]){"batch_fast.c.in", "batch_friction.c.in", "batch_friction_across.c.in", NULL}, fast_point,

@@ -6,6 +6,7 @@
 #include "emit/emit.h"
 #include "emit/emit_private.h"
 #include "expression/expression.h"
+#include "gic_runtime.h"
 
 #include <math.h>
 #include <string.h>
@@ -474,11 +475,28 @@ static void write_failures(const Emitter *m, const Check *check, const char *vec
     }
 }
 
+/* Where the road must be the same on both sides, friction that is not comes as a number below 0: an assumption. */
+static void write_uneven(const Emitter *m, const char *friction, int width)
+{
+    const char *status = status_name(GIC_ERROR_ASSUMPTION);
+    if (width && m->style->width)
+        text_print(m->out, "%*s%s_NEED(%s >= 0, %s);\n", m->indent, "", function_name(width), friction, status);
+    else if (width)
+        text_print(m->out, "%*sif (!%s_EVERY(%s >= 0))\n%*sreturn %s;\n", m->indent, "", function_name(width), friction,
+                   m->indent + 4, "", status);
+    else if (m->style->lanes)
+        text_print(m->out, "%*sNEED(~(%s < LANE(R(0.0))), %s);\n", m->indent, "", friction, status);
+    else
+        text_print(m->out, "%*sif (%s < R(0.0))\n%*sreturn %s;\n", m->indent, "", friction, m->indent + 4, "", status);
+}
+
 static void write_check(Emitter *m, const Check *check)
 {
     Text line = {.pool = m->dag->pool};
     const int width = width_of(m, check->value);
     write_whole(m, &line, check->value, is_vector(m, check->value), width);
+    if (m->block->across && check->status == GIC_ERROR_ROAD)
+        write_uneven(m, line.s, width);
     if (width) {
         const char *function = function_name(width);
         const char *value = check->magnitude ? pool_print(m->dag->pool, "%s_FABS(%s)", function, line.s) : line.s;

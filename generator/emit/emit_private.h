@@ -201,6 +201,9 @@ int conditions(const Generation *g);                          /* texts of condit
 void write_assumption_texts(Generation *g, Text *out);        /* they follow the texts of conditions */
 void write_narrowing(Generation *g, Text *out);               /* for the comment at the head of the file */
 void write_road(Generation *g, Text *out);                    /* the function that looks it up */
+/* Insertions: the place among the texts of the assumption that both sides have the same road; the same in a lane. */
+void write_across(void *context, Text *out, int indent);
+void write_across_lane(void *context, Text *out, int indent);
 const char *friction_template(const Generation *g);           /* of the function that looks friction up */
 void write_assumptions(void *context, Text *out, int indent); /* the functions that check them */
 void write_assume(Generation *g, Text *out, int indent, AssumptionAbout about); /* the call of this function */

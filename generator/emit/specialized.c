@@ -82,7 +82,7 @@ static bool assumes(const Generation *g, AssumptionAbout about)
 }
 
 /* The road of two sides, and its assumption's place among the texts. */
-static void write_across(void *context, Text *out, int indent)
+void write_across(void *context, Text *out, int indent)
 {
     const Generation *g = context;
     const Narrowing *narrowing = g->formulation->narrowing;
@@ -243,7 +243,7 @@ void write_batch_assume(Generation *g, Text *out, int indent, AssumptionAbout ab
 }
 
 /* As write_across, in a lane. */
-static void write_across_lane(void *context, Text *out, int indent)
+void write_across_lane(void *context, Text *out, int indent)
 {
     const Generation *g = context;
     const Narrowing *narrowing = g->formulation->narrowing;

@@ -202,6 +202,7 @@ static void write_assume_fast(void *context, Text *out, int indent)
 }
 
 static const Insertion wheels_point[] = {{"friction", write_friction},
+                                         {"condition", write_across},
                                          {"wheel classes", write_wheel_classes},
                                          {"link", write_link},
                                          {"powertrain", write_powertrain},

@@ -25,6 +25,8 @@ struct Variable {
     const gic_model *model;
     gic_head *self;    /* during a step */
     int status;        /* of the right-hand side that failed last in this step */
+    int32_t lost;      /* the subset that it named */
+    int32_t creeping;  /* steps so far, one after the other, that are too short to come anywhere */
     double first_step; /* s, after a restart, when nothing is known yet */
     double step;       /* s, proposed by the error control */
     bool jumped;       /* the last step ended with a change of the integrated numbers */
@@ -107,6 +109,7 @@ static int right_hand_side(void *user, double time, const double *state, double 
     if (status == GIC_OK)
         return 0;
     variable->status = status;
+    variable->lost = variable->self->subset;
     find_back(variable);
     return -1;
 }
@@ -394,13 +397,53 @@ static int careful_step(Variable *variable, gic_head *self, double end)
     return status;
 }
 
+/* What stops a right-hand side a little further on in the direction of the rates, if anything does: as in
+ * right_hand_side(). */
+static void look_ahead(Variable *variable, gic_head *self)
+{
+    const gic_model *model = variable->model;
+    const size_t n = states(model);
+    const double *state = array_of(self, model->state_offset);
+    double rate[n + 1], place[n + 1], none[n + 1];
+    memcpy(variable->before, self, model->size);
+    int status = model->rhs(variable->before, gic_time(self), state, rate);
+    for (double ahead = 1e-9; status == GIC_OK && ahead < 1e-2; ahead *= 10) {
+        for (size_t i = 0; i < n; ++i)
+            place[i] = state[i] + ahead * rate[i];
+        memcpy(variable->before, self, model->size);
+        status = model->rhs(variable->before, gic_time(self) + ahead, place, none);
+    }
+    variable->status = status;
+    variable->lost = ((const gic_head *)variable->before)->subset;
+}
+
+/* Towards a state that can't be passed, such as a dead centre, the error control takes ever shorter steps, at last of
+ * some units of the last place of the time, which would not end. Many of them, one after the other, end with the status
+ * of what stopped them. */
+static int creep(Variable *variable, gic_head *self, double end)
+{
+    enum { MANY = 200 };
+    const double start = gic_time(variable->whole), time = gic_time(self);
+    const double short_step = 64 * DBL_EPSILON * fmax(fabs(time), 1e-3);
+    variable->creeping = time - start <= short_step && time < end ? variable->creeping + 1 : 0;
+    if (variable->creeping < MANY)
+        return GIC_OK;
+    variable->creeping = 0;
+    if (variable->status == GIC_OK)
+        look_ahead(variable, self);
+    self->subset = variable->status == GIC_OK ? -1 : variable->lost;
+    return variable->status == GIC_OK ? GIC_ERROR_UNSTABLE : variable->status;
+}
+
 /* variable_step() without changes of discrete states. On a failure `self` is as it was. */
 static int step(Variable *variable, gic_head *self, double end)
 {
     memcpy(variable->whole, self, variable->model->size);
-    const int status = variable->model->contact_count
-                           ? careful_step(variable, self, end)
-                           : smooth_step(variable, self, variable->stepper, variable->first_step, end);
+    int status = variable->model->contact_count
+                     ? careful_step(variable, self, end)
+                     : smooth_step(variable, self, variable->stepper, variable->first_step, end);
+    if (status == GIC_OK)
+        status = creep(variable, self, end);
     if (status == GIC_OK) {
         probe_end(variable->probe);
         variable->begun = true;

@@ -44,7 +44,7 @@ static int friction_at(const Ground *ground, const double point[3], double *fric
     *friction = 1;
     if (ground->road && ground->road->friction)
         *friction = ground->road->friction(ground->road, ground->lane, ground->time, point[0], point[1]);
-    return gic_finite(friction, 1) ? GIC_OK : GIC_ERROR_ROAD;
+    return gic_finite(friction, 1) && *friction > 0 ? GIC_OK : GIC_ERROR_ROAD;
 }
 
 /* Along s x n. */

@@ -312,8 +312,8 @@ static fmu_result set_road(fmu_instance *instance, int32_t i, double value)
     if (part == FMU_NORMAL_Z && !(value > 0))
         return fmu_say(instance, FMU_DISCARD,
                        "the normal of the road must point upwards: z %g is not greater than zero", value);
-    if (part == FMU_FRICTION && value < 0)
-        return fmu_say(instance, FMU_DISCARD, "friction can't be less than zero: %g", value);
+    if (part == FMU_FRICTION && !(value > 0))
+        return fmu_say(instance, FMU_DISCARD, "friction must be greater than zero: %g", value);
     data->ground.plane[i / FMU_PLANE][part] = (gic_real)value;
     data->ground.given = 1;
     adopt(data);
