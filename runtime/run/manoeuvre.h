@@ -245,6 +245,26 @@ double manoeuvre_steady_angle(Manoeuvre *manoeuvre);
 const char *manoeuvre_step_profile(Manoeuvre *manoeuvre, double angle);
 const Trial *manoeuvre_step_trial(Manoeuvre *manoeuvre, double angle, const char *name);
 
+/* manoeuvre_driver.c: a driver who follows a path, found for a vehicle at a speed by its linear model. */
+typedef struct PathDriver {
+    double speed, adapt; /* m/s; 1/s: `adapt` of models/SCENE.md section 5, 0 where errors grow with it */
+    double gain;         /* steer angle by that of a vehicle without slip: the steady one, or the best of some */
+    double preview;      /* s that he looks ahead */
+    double decay;        /* 1/s with which the slowest motion that he moves dies out; not above 0: it grows */
+    double stable[2];    /* s: with previews between these it decays */
+} PathDriver;
+
+/* The preview with which errors die out most quickly where he does not learn; adapt: 1/s with which he is to. False:
+ * with none do they die out, *why. */
+bool manoeuvre_find_driver(Manoeuvre *manoeuvre, double speed, double adapt, PathDriver *driver, const char **why);
+/* The same, which ends in car_refuse(). */
+PathDriver manoeuvre_driver(Manoeuvre *manoeuvre, double speed, double adapt);
+/* `driver` of a scene: pedals, as text, "": none, and what he steers by but for `path`, as it stands in a scene. */
+const char *manoeuvre_driver_text(const Manoeuvre *manoeuvre, const PathDriver *driver, const char *pedals,
+                                  const char *path);
+/* Rows of what was found; prefix: of their names, "": none. */
+void manoeuvre_driver_rows(Manoeuvre *manoeuvre, const PathDriver *driver, const char *prefix);
+
 /* manoeuvre_frequency.c: gain, phase, rad, negative where it lags, and coherence of a channel by the steer angle. */
 typedef struct Response {
     double gain, phase, coherence;

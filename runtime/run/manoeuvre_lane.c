@@ -9,10 +9,10 @@
 
 static const double before = 12;                                         /* m from the start to the first lane */
 static const double begin[] = {10, 8, 6, 13}, fastest = 60, close = 0.1; /* m/s; begin: tried until one does */
-/* What the driver tries, one after the other: s that he looks ahead, m within a lane where his line leaves it. */
+/* What the driver tries, one after the other: how far he looks ahead, by the preview found for him, m within a lane
+ * where his line leaves it. */
 enum { LOOKS = 4, TURNS = 3, WAYS = LOOKS * TURNS };
-static const double looks[LOOKS] = {0.45, 0.3, 0.6, 0.75}, turns[TURNS] = {1.5, 0, 3};
-static const double shortest = 1.5; /* m that he looks ahead at least */
+static const double looks[LOOKS] = {1, 2 / 3.0, 4 / 3.0, 5 / 3.0}, turns[TURNS] = {1.5, 0, 3};
 
 enum { LANES = 3 };
 
@@ -21,11 +21,13 @@ typedef struct Lane {
 } Lane;
 
 /* The vehicle as a rectangle: half its width, and its axles from the centre of mass. tried: the order in which the
- * driver tries; what led through last is first. */
+ * driver tries; what led through last is first, as `driver`, with what he looked ahead in `used`, s. */
 typedef struct Course {
     Lane lane[LANES];
     double half, axle[2];
     int tried[WAYS];
+    PathDriver driver;
+    double used;
 } Course;
 
 static Course course_of(const Manoeuvre *m)
@@ -74,22 +76,20 @@ static double line(const Course *c, double turn, double x)
 }
 
 /* keeps: the speed that the driver keeps; 0: pedals are free. */
-static const char *course_text(const Manoeuvre *m, const Course *c, double look, double turn, double keeps)
+static const char *course_text(const Manoeuvre *m, const Course *c, const PathDriver *driver, double turn, double keeps)
 {
     const TestCar *car = m->car;
     Text text = {.pool = m->pool};
-    text_print(&text, "driver:\n");
+    const char *pedals = "";
     if (keeps > 0 && car->accelerator >= 0 && car->brake >= 0)
-        text_print(&text, "  speed: {target: %.17g, gain: 3, integral: 1}\n", keeps);
-    text_print(&text, "  steering:\n    path: {points: [");
+        pedals = pool_print(m->pool, "  speed: {target: %.17g, gain: 3, integral: 1}\n", keeps);
+    text_print(&text, "{points: [");
     for (double x = -15; x <= c->lane[LANES - 1].to + 90; x += x < c->lane[LANES - 1].to + 9 ? 1.5 : 10)
         text_print(&text, "%s[%g, %.9g]", x > -15 ? ", " : "", x, line(c, turn, x));
-    text_print(&text,
-               "]}\n    input: %s\n    per_angle: %.17g\n    wheelbase: %.17g\n    limit: %.17g\n    preview: %g\n    "
-               "shortest: %g\n"
-               "    adapt: 0\ncourse:\n  lanes:\n",
-               car->model->input[car->steering].name, 1 / car->angle, car->sheet.wheelbase,
-               0.999 * fmin(-car->range[0], car->range[1]) / fabs(car->angle), look, shortest);
+    text_print(&text, "]}");
+    const char *steers = manoeuvre_driver_text(m, driver, pedals, text.s);
+    text = (Text){.pool = m->pool};
+    text_print(&text, "%scourse:\n  lanes:\n", steers);
     for (int k = 0; k < LANES; ++k)
         text_print(&text, "    - {points: [[%g, %.9g], [%g, %.9g]], width: %.9g, cones: 5}\n", c->lane[k].from,
                    middle(&c->lane[k]), c->lane[k].to, middle(&c->lane[k]), c->lane[k].high - c->lane[k].low);
@@ -129,15 +129,21 @@ static const Trial *drive(Manoeuvre *m, Course *c, double speed, const char **wh
     TestCar *car = m->car;
     if (!car_keeps(car, speed, why))
         return NULL;
+    PathDriver driver;
+    if (!manoeuvre_find_driver(m, speed, 0, &driver, why))
+        return NULL;
     const bool drives = m->value[1] < 1.5; /* part 1: the speed is kept */
     for (int k = 0; k < WAYS; ++k) {
         const int i = c->tried[k];
         const double duration = (c->lane[LANES - 1].to + 20) / speed * 2;
-        const Trial *trial =
-            trial_run(car, pool_print(m->pool, "at %.4g m/s", speed),
-                      car_scene(car, duration, speed, false,
-                                course_text(m, c, looks[i % LOOKS], turns[i / LOOKS], drives ? speed : 0)),
-                      is_through, c);
+        PathDriver tries = driver;
+        tries.preview *= looks[i % LOOKS];
+        if (tries.preview < driver.stable[0] || tries.preview > driver.stable[1])
+            continue;
+        const Trial *trial = trial_run(
+            car, pool_print(m->pool, "at %.4g m/s", speed),
+            car_scene(car, duration, speed, false, course_text(m, c, &tries, turns[i / LOOKS], drives ? speed : 0)),
+            is_through, c);
         const double *last = trial->row[trial->rows - 1];
         const int lane = touched(c, last);
         *why = trial->tipped                           ? "the vehicle tips over"
@@ -148,6 +154,8 @@ static const Trial *drive(Manoeuvre *m, Course *c, double speed, const char **wh
         if (!*why) {
             memmove(c->tried + 1, c->tried, (size_t)k * sizeof *c->tried);
             c->tried[0] = i;
+            c->driver = driver;
+            c->used = tries.preview;
             return trial;
         }
     }
@@ -190,6 +198,8 @@ void manoeuvre_lane_change(Manoeuvre *m)
     sheet_add(s, NULL, "ay_left", "Largest lateral acceleration to the left", "m/s^2", most[TRIAL_AY]);
     sheet_add(s, NULL, "ay_right", "To the right", "m/s^2", -least[TRIAL_AY]);
     sheet_add_way(s, NULL, "width", "Width of the vehicle", 2 * c.half);
+    manoeuvre_driver_rows(m, &c.driver, "");
+    sheet_add(s, NULL, "driver.used", "Preview that led through", "s", c.used);
     sheet_note(s, pool_print(m->pool, "at %.4g m/s: %s", high, limit ? limit : "not tried"));
     static const Channel over[] = {TRIAL_ANGLE, TRIAL_Y, TRIAL_AY, TRIAL_YAW_RATE, TRIAL_ROLL, TRIAL_SPEED};
     for (size_t i = 0; i < sizeof over / sizeof *over; ++i)

@@ -203,23 +203,26 @@ static void note_track(Manoeuvre *m)
                                          track));
 }
 
-/* At a speed that it keeps, on a road of a class from a seed. */
-static const Trial *drive(Manoeuvre *m, const char *name, double speed, int class, double duration, double seed)
+static const double learns = 0.5; /* 1/s, how fast the driver does */
+
+/* At a speed that it keeps, on a road of a class from a seed. driver: NULL, the vehicle is not steered. */
+static const Trial *drive(Manoeuvre *m, const char *name, double speed, int class, double duration, double seed,
+                          const PathDriver *driver)
 {
     TestCar *car = m->car;
     bool between;
     duration += ride_run_in;
     Text more = {.pool = m->pool};
-    text_print(&more,
-               "road: {type: iso8608, class: %c, length: %.9g, seed: %.0f, start: %.9g, track: %.9g}\n"
-               "driver:\n  speed: {target: %.17g, gain: 3, integral: 1}\n",
-               'A' + class - 1, ceil(speed * (duration + 2) + 20), seed, 10.0, track_of(&car->sheet, &between), speed);
-    if (car->axle) /* which keeps it between its tracks */
-        text_print(&more,
-                   "  steering:\n    path: {points: [[-20, 0], [%.9g, 0]]}\n    input: %s\n    per_angle: %.17g\n"
-                   "    wheelbase: %.17g\n",
-                   ceil(speed * (duration + 10) + 100), car->model->input[car->steering].name, 1 / car->angle,
-                   car->sheet.wheelbase);
+    text_print(&more, "road: {type: iso8608, class: %c, length: %.9g, seed: %.0f, start: %.9g, track: %.9g}\n",
+               'A' + class - 1, ceil(speed * (duration + 2) + 20), seed, 10.0, track_of(&car->sheet, &between));
+    const char *pedals = pool_print(m->pool, "  speed: {target: %.17g, gain: 3, integral: 1}\n", speed);
+    if (driver) /* which keeps it between its tracks */
+        text_print(&more, "%s",
+                   manoeuvre_driver_text(
+                       m, driver, pedals,
+                       pool_print(m->pool, "{points: [[-20, 0], [%.9g, 0]]}", ceil(speed * (duration + 10) + 100))));
+    else
+        text_print(&more, "driver:\n%s", pedals);
     car->output_step = ride_sampling;
     const Trial *trial = trial_run(car, name, car_scene(car, duration, speed, false, more.s), NULL, NULL);
     manoeuvre_whole(m, trial, "a smoother road, class=1, or a lower speed");
@@ -234,8 +237,13 @@ void manoeuvre_ride(Manoeuvre *m)
     car_need_brake(m->car);
     car_settle(m->car, m->value[0]);
     note_track(m);
-    const Trial *trial = drive(m, "ride", m->value[0], (int)round(m->value[1]), m->value[2], m->value[3]);
+    const bool steered = m->car->axle;
+    const PathDriver driver = steered ? manoeuvre_driver(m, m->value[0], learns) : (PathDriver){0};
+    const Trial *trial =
+        drive(m, "ride", m->value[0], (int)round(m->value[1]), m->value[2], m->value[3], steered ? &driver : NULL);
     manoeuvre_ride_numbers(m, trial);
+    if (steered)
+        manoeuvre_driver_rows(m, &driver, "");
     manoeuvre_draw(m, sizeof over / sizeof *over, over);
 }
 
@@ -253,13 +261,15 @@ void manoeuvre_ride_speeds(Manoeuvre *m)
     for (int k = 0; k < SPEEDS; ++k) {
         const double speed = low + (high - low) * k / (SPEEDS - 1);
         const char *why, *at = pool_print(m->pool, "at_%.4g", speed);
-        if (!car_keeps(car, speed, &why)) {
+        PathDriver driver;
+        if (!car_keeps(car, speed, &why) || (car->axle && !manoeuvre_find_driver(m, speed, learns, &driver, &why))) {
             if (k == 0)
                 car_refuse(car, car->remedy, why);
             sheet_note(m->result, pool_print(m->pool, "from %.4g m/s on: %s", speed, why));
             break;
         }
-        const Trial *trial = drive(m, at, speed, (int)round(m->value[2]), m->value[3], m->value[4]);
+        const Trial *trial =
+            drive(m, at, speed, (int)round(m->value[2]), m->value[3], m->value[4], car->axle ? &driver : NULL);
         double weighted[TRIAL_CHANNELS];
         x[n] = speed;
         y[n] = total_of(m, trial, weighted);
@@ -270,6 +280,8 @@ void manoeuvre_ride_speeds(Manoeuvre *m)
             sheet_add(m->result, NULL, pool_print(m->pool, "%s.%s.weighted", at, trial_signal[of[i].channel].name),
                       pool_print(m->pool, "%s, weighted rms", of[i].title), "m/s^2", weighted[of[i].channel]);
         }
+        if (car->axle)
+            manoeuvre_driver_rows(m, &driver, at);
         ++n;
     }
     for (int c = 1; c < CURVES; ++c) /* rows that were not driven close up */

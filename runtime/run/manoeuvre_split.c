@@ -5,16 +5,13 @@
 #include <math.h>
 
 static const double standing = 0.02, far = 2000, rise = 0.1; /* m/s, m, s */
+static const double learns = 0.5;                            /* 1/s, how fast the driver does */
 static const double beside = 0.1;                            /* m about the middle in which the friction changes */
 
-static const char *driver(const Manoeuvre *m)
+static const char *straight_line(const Manoeuvre *m, const PathDriver *driver)
 {
-    const TestCar *car = m->car;
-    return pool_print(m->pool,
-                      "driver:\n  steering:\n    path: {points: [[%.9g, 0], [0, 0], [%g, 0]]}\n    input: %s\n"
-                      "    per_angle: %.17g\n    wheelbase: %.17g\n    limit: %.17g\n",
-                      -far / 10, far, car->model->input[car->steering].name, 1 / car->angle, car->sheet.wheelbase,
-                      0.999 * fmin(-car->range[0], car->range[1]) / fabs(car->angle));
+    return manoeuvre_driver_text(m, driver, "",
+                                 pool_print(m->pool, "{points: [[%.9g, 0], [0, 0], [%g, 0]]}", -far / 10, far));
 }
 
 static bool is_over(void *context, const Trial *trial)
@@ -33,11 +30,13 @@ void manoeuvre_split_braking(Manoeuvre *m)
     if (steered)
         car_need_steering(car);
     car_settle(car, speed);
+    const PathDriver driver = steered ? manoeuvre_driver(m, speed, learns) : (PathDriver){0};
     const double from = manoeuvre_speed_before(car, speed, &start);
-    const char *more = pool_print(m->pool,
-                                  "road: {type: flat, friction: {patches: [{x: [%g, %g], y: [0, %g], value: %.17g, "
-                                  "fade: %g}]}}\n%sinputs:\n  brake: {step: {to: %.17g, rise: %g, start: %g}}\n",
-                                  -far, far, far, low, beside, steered ? driver(m) : "", level, rise, start);
+    const char *more =
+        pool_print(m->pool,
+                   "road: {type: flat, friction: {patches: [{x: [%g, %g], y: [0, %g], value: %.17g, "
+                   "fade: %g}]}}\n%sinputs:\n  brake: {step: {to: %.17g, rise: %g, start: %g}}\n",
+                   -far, far, far, low, beside, steered ? straight_line(m, &driver) : "", level, rise, start);
     const Trial *trial = trial_run(car, "braking", car_scene(car, most, from, false, more), is_over, &below);
     manoeuvre_whole(m, trial, "a lower speed or less brake: speed=10, brake=0.3");
     manoeuvre_keep(m, trial);
@@ -62,6 +61,7 @@ void manoeuvre_split_braking(Manoeuvre *m)
         for (int i = 0; i < trial->rows; ++i)
             angle = fmax(angle, fabs(trial->row[i][TRIAL_ANGLE]));
         sheet_add(s, NULL, "steer_angle", "Largest steer angle of the driver", "rad", angle);
+        manoeuvre_driver_rows(m, &driver, "");
     }
     static const Channel along[] = {TRIAL_SPEED, TRIAL_AX, TRIAL_YAW, TRIAL_Y};
     manoeuvre_draw(m, sizeof along / sizeof *along, along);

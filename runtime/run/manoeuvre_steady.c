@@ -8,6 +8,7 @@
 
 static const double gravity = 9.80665;
 static const double begin = 5;      /* s straight ahead, or into the circle */
+static const double learns = 0.5;   /* 1/s, how fast the driver on the circle does */
 static const double slowest = 0.95; /* share of the speed below which it is not kept */
 /* Of the largest lateral acceleration, below which the limit is passed: with steering that grows, and on a circle. */
 static const double past_peak[] = {0.98, 0.9};
@@ -210,20 +211,19 @@ void manoeuvre_steady_radius(Manoeuvre *m)
         car_refuse(car, pool_print(m->pool, "radius=%.3g", ceil(1.2 * least)),
                    "the steering does not reach that circle");
     car_settle(car, start);
+    const PathDriver driver = manoeuvre_driver(m, sqrt(m->value[2] * radius), learns);
     for (int side = 1; side >= -1; side -= 2) {
         Limit limit = {.sign = side, .radius = radius};
-        const char *more = pool_print(m->pool,
-                                      "driver:\n  speed: {target: %s, gain: 3, integral: 1}\n  steering:\n"
-                                      "    path: {circle: {center: [%.17g, %.17g], radius: %.17g}}\n    input: %s\n"
-                                      "    per_angle: %.17g\n    wheelbase: %.17g\n    limit: %.17g\n",
-                                      target, car->com[0], side * radius, side * radius,
-                                      car->model->input[car->steering].name, 1 / car->angle, car->sheet.wheelbase,
-                                      0.999 * fmin(-car->range[0], car->range[1]) / fabs(car->angle));
+        const char *more = manoeuvre_driver_text(
+            m, &driver, pool_print(m->pool, "  speed: {target: %s, gain: 3, integral: 1}\n", target),
+            pool_print(m->pool, "{circle: {center: [%.17g, %.17g], radius: %.17g}}", car->com[0], side * radius,
+                       side * radius));
         const Trial *trial = trial_run(car, side > 0 ? "left" : "right", car_scene(car, duration, start, false, more),
                                        is_at_limit, &limit);
         const Points points = levels_of(m, trial);
         manoeuvre_keep(m, trial);
         add_results(m, trial, &points, &limit);
     }
+    manoeuvre_driver_rows(m, &driver, "");
     draw(m);
 }

@@ -76,6 +76,15 @@ bool sheet_motion_at(const SheetMotion *motion, double omega, double *re, double
 /* The change of component `output` of the model's outputs, re and im, in the motion z of sheet_motion_at(). */
 void sheet_motion_output(const SheetMotion *motion, int output, double omega, const double *re, const double *im,
                          double out[2]);
+/* The same file: dz/dt = A z + B_0 u + B_1 u' + B_2 u'' about straight motion at a speed, m/s, of all small motions z
+ * [n] as in run/linearize.h, with u the steering coordinate, and the speed held; A [n][n], B [SHEET_STEERING][n]. y,
+ * yaw, yaw_rate: numbers of z. False: there is none. */
+enum { SHEET_STEERING = 3 };
+typedef struct SheetPath {
+    int n, y, yaw, yaw_rate;
+    double *A, *B;
+} SheetPath;
+bool sheet_path(const Sheet *sheet, int steer, double speed, SheetPath *path);
 /* sheet_report.c: all rows of a sheet. */
 Sheet sheet_study(Pool *pool, const Model *model, const Scene *scene, const Request *request);
 /* sheet_report.c: --sheet: a table, or CSV or a page by the ending of the file. */

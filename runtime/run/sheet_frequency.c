@@ -7,7 +7,7 @@
 
 #include <string.h>
 
-enum { X = 0, Y = 1, YAW = 5, OF_INPUT = 3 };
+enum { X = 0, Y = 1, YAW = 5, OF_INPUT = SHEET_STEERING };
 
 struct SheetMotion {
     const Sheet *sheet;
@@ -60,6 +60,37 @@ const SheetMotion *sheet_motion(const Sheet *sheet, int steer, double speed)
             motion->B[k * motion->n + i] = b[k][motion->kept[i]];
     }
     return motion;
+}
+
+bool sheet_path(const Sheet *sheet, int steer, double speed, SheetPath *path)
+{
+    const Linear *linear = sheet->found->linear;
+    const gic_model *code = sheet->found->engine->code;
+    const int all = linear->count;
+    const size_t size = (size_t)all * sizeof(double);
+    Instance *self = (Instance *)(void *)instance_new(sheet->pool, sheet->found->engine);
+    double *f = pool_alloc(sheet->pool, size);
+    bool jump;
+    *path = (SheetPath){.n = all,
+                        .y = Y,
+                        .yaw = YAW,
+                        .yaw_rate = linear->places + YAW,
+                        .A = pool_alloc(sheet->pool, (size_t)all * size),
+                        .B = pool_alloc(sheet->pool, OF_INPUT * size)};
+    memcpy(self, sheet->found->self, code->size);
+    int status = sheet_set_in_motion(sheet, self, speed);
+    if (status == GIC_OK)
+        status = linearize(linear, self, f, path->A);
+    for (int k = 0; k < OF_INPUT && status == GIC_OK; ++k)
+        status = linear_column(linear, self, LINEAR_INPUT, code->coordinate_input[steer] + k, path->B + k * all, 0,
+                               NULL, &jump);
+    for (int i = 0; i < all; ++i) { /* along x nothing changes, and the speed is held */
+        path->A[X * all + i] = path->A[i * all + X] = 0;
+        path->A[(linear->places + X) * all + i] = path->A[i * all + linear->places + X] = 0;
+    }
+    for (int k = 0; k < OF_INPUT; ++k)
+        path->B[k * all + X] = path->B[k * all + linear->places + X] = 0;
+    return status == GIC_OK && gic_finite(path->A, all * all) && gic_finite(path->B, OF_INPUT * all);
 }
 
 bool sheet_motion_at(const SheetMotion *motion, double omega, double *re, double *im)
