@@ -305,6 +305,7 @@ void manoeuvre_ramp_steer(Manoeuvre *manoeuvre);
 void manoeuvre_sine(Manoeuvre *manoeuvre);
 void manoeuvre_random(Manoeuvre *manoeuvre);
 void manoeuvre_sine_dwell(Manoeuvre *manoeuvre);
+void manoeuvre_single_lane_change(Manoeuvre *manoeuvre);
 void manoeuvre_frequency(Manoeuvre *manoeuvre);
 void manoeuvre_lane_change(Manoeuvre *manoeuvre);
 void manoeuvre_braking(Manoeuvre *manoeuvre);

@@ -33,6 +33,11 @@ check 'a semitrailer that is asked for too much' exits 1
 check 'it is told how' says 'tips over\|no sine of the steering reaches'
 run --manoeuvre sine "$models/semitrailer.veh" speed=45 ay=1
 check 'a semitrailer that is too slow' says 'does not keep 45 m/s.*'
+run --manoeuvre single-lane-change "$models/semitrailer.veh" speed=20 ay=1 --report "$work/page.html" --trace "$work/trace.csv"
+check 'a semitrailer: a single lane change' exits 0
+check 'how far its last unit goes aside' prints 'Last unit beside the path of the first'
+check 'what driver was found' prints 'He looks ahead'
+check 'no number is none' sh -c "! grep -qiE '[^a-z](nan|inf)[^a-z]' '$work/out' '$work/trace.csv' '$work/page.html'"
 sed 's/damping: 400/damping: 40000/' "$two" >"$work/stiff.veh"
 run --manoeuvre sine "$work/stiff.veh" speed=15 ay=0.5
 check 'units that do not swing' prints 'articulation.damping: the units do not swing against each other three times'

@@ -190,5 +190,45 @@ for V in (20.0, 30.0):
         root = min((r for r in roots if r.imag > 0.1), key=lambda r: -r.real / abs(r))
         check(f"{side} {V}: damping by the eigenvalue", value[f"{side}.articulation.damping"], -root.real / abs(root), 0.05)
         check(f"{side} {V}: frequency by the eigenvalue", value[f"{side}.articulation.frequency"], root.imag / 2 / np.pi, 0.02)
+
+# ---- single lane change: a driver; the motion integrated along what he steered, offtracking by the places of both ------------------
+
+V, ay, F = 20.0, 0.5, 0.4
+value, trials, _ = drive("single-lane-change", f"speed={V}", f"ay={ay}", f"frequency={F}")
+omega = 2 * np.pi * F
+lane = 2 * np.pi * ay / omega**2
+check("lane", value["lane"], lane, 1e-12)
+A, B = system(V)
+Y, D = outputs(V, A, B)
+# besides: place aside of the first unit's centre of mass, its heading, articulation once more by the yaw rates
+wide = np.zeros((9, 9))
+wide[:7, :7], wide[7, 0], wide[7, 8], wide[8, 1] = A, 1, V, 1
+places = np.zeros((2, 9))
+places[0, 7] = 1
+places[1, [7, 8, 3]] = 1, -(d + e), -e  # that of the last one: heading and articulation
+for side, sign in (("left", 1), ("right", -1)):
+    trace = trials[side]
+    time, delta = trace["time"], trace["steer_angle"]
+    rate = np.gradient(delta, time)
+    u = np.array([delta, rate, np.gradient(rate, time)]).T
+    rows, adds = np.hstack([Y, np.zeros((5, 2))]), D
+    follow = scipy.signal.lsim((wide, np.vstack([B, np.zeros((2, 3))]), np.vstack([rows, places]), np.vstack([adds, np.zeros((2, 3))])), u, time)[1]
+    for k, name in enumerate(names):
+        check(f"lane change, {side}: {name} over time", np.max(np.abs(trace[name] - follow[:, k])) / np.max(np.abs(follow[:, k])), 0, 0.02, 1)
+    on = time >= 4 - 1e-9
+    peak = {name: np.max(np.abs(trace[name][on])) for name in names}
+    check(f"lane change, {side}: rearward.ay", value[f"{side}.rearward.ay"], peak["last.ay"] / peak["ay"], 1e-9)
+    check(f"lane change, {side}: rearward.ay by the equations", value[f"{side}.rearward.ay"],
+          np.max(np.abs(follow[:, 1])) / np.max(np.abs(follow[:, 0])), 0.02)
+    off = trace["last.y"] - np.interp(trace["last.x"], trace["x"], trace["y"])
+    check(f"lane change, {side}: offtracking by the time history", value[f"{side}.offtracking"], np.max(np.abs(off[on])), 1e-6)
+    of_first = np.interp(time - (d + e) / V, time, follow[:, 5])
+    check(f"lane change, {side}: offtracking by the equations", value[f"{side}.offtracking"], np.max(np.abs(follow[:, 6] - of_first)), 0.03)
+    check(f"lane change, {side}: beyond the lane", value[f"{side}.beyond"], np.max(sign * trace["last.y"][on]) - lane, 1e-6)
+    turn = np.clip(omega * (trace["x"] / V - 4), 0, 2 * np.pi)
+    path = sign * ay / omega**2 * (turn - np.sin(turn))
+    check(f"lane change, {side}: off the path", value[f"{side}.off"], np.max(np.abs(trace["y"] - path)), 1e-6)
+    check(f"lane change, {side}: the path is followed", value[f"{side}.off"] / lane, 0, 0.15, 1)
+    check(f"lane change, {side}: acceleration as that of the path", value[f"{side}.ay.first"], ay, 0.1)
 print(f"{passed} passed, {failed} failed")
 sys.exit(failed > 0)
