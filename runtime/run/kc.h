@@ -153,6 +153,13 @@ void kc_bend_second(const KcRubber *rubber, const KcBent *bent, const KcLook *lo
  * as kc_look_second() gives it for a motion along b alone. */
 double kc_rubber_force(const Kc *kc, const KcLook *look, int a);
 double kc_rubber_slope(const Kc *kc, const KcLook *look, int a, int b, const double *second);
+/* What a bushing exerts on both its bodies, at their own ends: force and torque in the axes of the world; and the rates
+ * of these along a motion. */
+typedef struct KcWrench {
+    double on[2][6], rate[2][6];
+} KcWrench;
+/* along: rates of the look's columns. */
+void kc_rubber_wrench(const KcRubber *rubber, const KcLook *look, const double *along, KcWrench *wrench);
 
 /* ---- kc_rubber.c: bodies that bushings alone hold */
 

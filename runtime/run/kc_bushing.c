@@ -227,3 +227,77 @@ double kc_rubber_slope(const Kc *kc, const KcLook *look, int a, int b, const dou
     }
     return sum;
 }
+
+/* J^T x = x + 1/2 theta x x + c theta x (theta x x), and its rate while theta and x change. */
+static void to_torque(const double theta[3], const double x[3], double out[3])
+{
+    double c, slope, once[3], twice[3];
+    turning(norm3(theta), &c, &slope);
+    cross3(theta, x, once);
+    cross3(theta, once, twice);
+    for (int i = 0; i < 3; ++i)
+        out[i] = x[i] + once[i] / 2 + c * twice[i];
+}
+
+static void to_torque_rate(const double theta[3], const double by[3], const double x[3], const double change[3],
+                           double out[3])
+{
+    double c, slope, once[3], twice[3], part[3], mixed[2][3];
+    turning(norm3(theta), &c, &slope);
+    cross3(theta, x, once);
+    cross3(theta, once, twice);
+    cross3(by, x, part);
+    cross3(by, once, mixed[0]);
+    cross3(theta, part, mixed[1]);
+    to_torque(theta, change, out);
+    for (int i = 0; i < 3; ++i)
+        out[i] += part[i] / 2 + slope * dot3(theta, by) * twice[i] + c * (mixed[0][i] + mixed[1][i]);
+}
+
+/* On the first body, of what acts on the second one, at a lever from its own end. */
+static void react(const double lever[3], const double on[6], double out[6])
+{
+    double torque[3];
+    cross3(lever, on, torque);
+    for (int i = 0; i < 3; ++i) {
+        out[i] = -on[i];
+        out[3 + i] = -on[3 + i] - torque[i];
+    }
+}
+
+void kc_rubber_wrench(const KcRubber *rubber, const KcLook *look, const double *along, KcWrench *wrench)
+{
+    const KcBent bent = kc_bend(rubber, look);
+    const double *theta = bent.q + 3;
+    double Q[BUSHING_AXES], change[BUSHING_AXES], by[BUSHING_AXES], part[3], v[3], turn[3], carrier[3], omega[3];
+    double *on = wrench->on[1], *rate = wrench->rate[1], rates[look->outputs + 1];
+    force_of(rubber, rubber->preload, bent.q, Q);
+    apply3(bent.axes, Q, on);
+    to_torque(theta, Q + 3, part);
+    apply3(bent.axes, part, on + 3);
+    react(bent.lever, on, wrench->on[0]);
+    memset(rates, 0, sizeof rates);
+    for (int k = 0; k < look->columns; ++k)
+        for (int o = 0; o < look->outputs; ++o)
+            rates[o] += along[k] * look->slope[k * look->outputs + o];
+    relative(rubber, &bent, rates, v, turn, carrier);
+    apply3_transposed(bent.axes, v, by);
+    apply3_transposed(bent.axes, turn, omega);
+    to_rate(theta, omega, by + 3);
+    force_of(rubber, NULL, by, change);
+    for (int half = 0; half < 2; ++half) { /* its axes turn with the first body */
+        double own[3];
+        if (half)
+            to_torque_rate(theta, by + 3, Q + 3, change + 3, own);
+        else
+            copy3(change, own);
+        apply3(bent.axes, own, rate + 3 * half);
+        cross3(carrier, on + 3 * half, part);
+        add3(rate + 3 * half, part, rate + 3 * half);
+    }
+    react(bent.lever, rate, wrench->rate[0]);
+    cross3(carrier, bent.lever, part);
+    add3(part, v, v); /* the lever's rate */
+    cross3(v, on, part);
+    sub3(wrench->rate[0] + 3, part, wrench->rate[0] + 3);
+}

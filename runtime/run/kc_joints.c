@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: MIT
  * What joints carry when an axle stands still on the pads of a rig. The model's own equations say it: base held, all
- * coordinates driven and at rest, so that reactions of joints and the forces that drive the coordinates are those of
- * statics, linear in what acts on the bodies. Their exact derivatives by the force of each force element (an input) and
- * by force and torque at each wheel's centre (a port) are what a unit of these makes; gravity, tires and all else do
- * not enter. The pads take what travel coordinates would need, by virtual work. */
+ * coordinates driven and at rest, so that reactions R of joints and the forces that drive the coordinates are those of
+ * statics, linear in what acts on the bodies: R = R_0(w) + B(w) u. u: forces of elements (inputs), force and torque at
+ * each wheel's centre and of bushings at both their ends (ports); B is found by exact derivatives, and what is R_0,
+ * gravity, tires and all else, does not enter. Where the axle balances (kc_balance.c) no coordinate that moves needs a
+ * force. A load changes it by w' and u', and R by B u' + (dB/dw w') u, of which the last is the difference of the exact
+ * derivatives of R by w with u and without. */
 #include "run/kc_joints.h"
 
 #include "base/vec3.h"
@@ -62,6 +64,15 @@ static Model *prepare(KcJoints *k, Pool *pool, const Model *model)
             copy3(wheel->center, port.point);
             *POOL_PUSH(pool, copy->port, copy->ports) = port;
         }
+    for (int r = 0; r < 2 * k->kc->rubbers; ++r) {
+        const Force *rubber = k->kc->rubber[r / 2].force;
+        k->mount[r] = rubber->body[r % 2] == BODY_GROUND ? -1 : copy->ports;
+        if (k->mount[r] < 0)
+            continue;
+        Port port = {.name = "kc", .body = rubber->body[r % 2], .in = BODY_GROUND};
+        copy3(rubber->point[r % 2], port.point);
+        *POOL_PUSH(pool, copy->port, copy->ports) = port;
+    }
     for (int j = 0; j < model->joints; ++j)
         kc_watch(pool, copy, (Output){.type = OUTPUT_REACTION, .index = j, .in = BODY_GROUND, .count = 6});
     k->drive = copy->output_components;
@@ -83,11 +94,20 @@ KcJoints *kc_joints_open(Pool *pool, const Model *model, const Scene *scene, Sol
 {
     KcJoints *k = pool_alloc(pool, sizeof *k);
     int *coordinate = pool_alloc(pool, ((size_t)model->coordinates + 1) * sizeof *coordinate), free = 0;
-    *k = (KcJoints){.kc = kc, .joints = model->joints};
-    k->rod = pool_alloc(pool, ((size_t)model->joints + 1) * sizeof *k->rod);
-    k->name = pool_alloc(pool, ((size_t)model->joints + 1) * sizeof *k->name);
+    *k = (KcJoints){.kc = kc, .joints = model->joints + kc->rubbers, .reactions = model->joints};
+    k->rod = pool_alloc(pool, ((size_t)k->joints + 1) * sizeof *k->rod);
+    k->name = pool_alloc(pool, ((size_t)k->joints + 1) * sizeof *k->name);
+    k->mount = pool_alloc(pool, (2 * (size_t)kc->rubbers + 1) * sizeof *k->mount);
+    k->balance = pool_alloc(pool, ((size_t)kc->axles + 1) * sizeof(KcBalance *));
+    for (int a = 0; a < kc->axles; ++a)
+        if (!kc->axle[a].refusal)
+            k->balance[a] = kc_balance_new(kc, &kc->axle[a], kc->axle[a].preload != NULL, kc->axle[a].steer);
     for (int j = 0; j < model->joints; ++j)
         k->name[j] = model->joint[j].name;
+    for (int r = 0; r < kc->rubbers; ++r) {
+        k->name[model->joints + r] = kc->rubber[r].force->name;
+        k->rod[model->joints + r] = -1;
+    }
     const Model *held = prepare(k, pool, model);
     if (held->free_base)
         held = model_hold(pool, held, held->body[BODY_BASE].position, held->body[BODY_BASE].euler);
@@ -110,18 +130,13 @@ KcJoints *kc_joints_open(Pool *pool, const Model *model, const Scene *scene, Sol
     k->out = pool_alloc(pool, room);
     k->by_element = pool_alloc(pool, room * ((size_t)kc->elements + 1));
     k->by_wheel = pool_alloc(pool, room * WRENCH * KC_WHEELS);
+    k->by_mount = pool_alloc(pool, room * (2 * WRENCH * (size_t)kc->rubbers + 1));
+    k->by_place = pool_alloc(pool, room * KC_COLUMNS);
+    k->acting = pool_alloc(pool, ((size_t)kc->elements + 1 + 2 * WRENCH * (size_t)kc->rubbers) * sizeof *k->acting);
     return k;
 }
 
-/* ---- a position ----------------------------------------------------------------------------------------- */
-
-/* What units of all that acts on an axle make. */
-typedef struct Unit {
-    int outputs;
-    double *element;          /* [elements][outputs] */
-    double *wheel;            /* [wheels][WRENCH][outputs] of force and torque at the centre */
-    double arm[KC_WHEELS][3]; /* from the centre to the contact */
-} Unit;
+/* ---- a place ---------------------------------------------------------------------------------------------- */
 
 KcLoad kc_case_load(int by)
 {
@@ -133,112 +148,253 @@ bool kc_case_opposed(int by)
     return (by - KC_BY_LOADS) % 2;
 }
 
+/* An axle where it balances. */
+typedef struct Stand {
+    const KcJoints *k;
+    const KcAxle *axle;
+    const KcBalance *balance;
+    int outputs, port;        /* port: of the axle's first wheel */
+    double arm[KC_WHEELS][3]; /* from the centre to the contact */
+    double *element;          /* [elements][outputs] by a unit of what acts */
+    double *wheel;            /* [wheels][WRENCH][outputs] */
+    double *mount;            /* [bushings][2][WRENCH][outputs] */
+    double *place;            /* [columns][outputs] by coordinates that move, of what acts alone */
+} Stand;
+
+/* What acts, u, or its change by a load. */
+typedef struct Acting {
+    double *element;                 /* [elements] N or N m */
+    double wheel[KC_WHEELS][WRENCH]; /* force and torque at the centre */
+    double (*mount)[WRENCH];         /* [bushings][2] on both bodies */
+} Acting;
+
 /* Does an element act, and move with the axle? What acts along the steering itself is part of what holds it. */
-static bool acts(const KcJoints *k, const KcAxle *axle, const KcLook *look, int e)
+static bool acts(const Stand *stand, int e)
 {
+    const KcElement *element = &stand->k->kc->element[e];
+    const KcLook *look = stand->balance->look;
     bool moves = false;
-    if (axle->steer >= 0 && k->kc->element[e].coordinate == axle->steer)
+    if (stand->axle->steer >= 0 && element->coordinate == stand->axle->steer)
         return false;
     for (int c = 0; c < look->columns; ++c)
-        moves = moves || fabs(kc_element_slope(&k->kc->element[e], look, c)) > 1e-9;
-    return moves && look->value[k->kc->element[e].force] != 0;
+        moves = moves || fabs(kc_element_slope(element, look, c)) > 1e-9;
+    return moves;
 }
 
-static int find_units(const KcJoints *k, const KcAxle *axle, const double *w, const KcLook *look, Unit *unit)
+/* Does a bushing bend with the axle? */
+static bool bends(const Stand *stand, int r)
 {
-    const gic_model *code = k->engine->code;
-    double *input = tape_array(k->self, code->input_offset);
-    bool jump;
-    int port = k->port;
-    for (int c = 0; c < code->coordinate_count; ++c) {
-        input[code->coordinate_input[c]] = w[c];
-        input[code->coordinate_input[c] + 1] = input[code->coordinate_input[c] + 2] = 0;
+    const KcRubber *rubber = &stand->k->kc->rubber[r];
+    const KcLook *look = stand->balance->look;
+    const KcBent bent = kc_bend(rubber, look);
+    double rate[BUSHING_AXES];
+    for (int c = 0; c < look->columns; ++c) {
+        kc_bend_rate(rubber, &bent, look, c, rate);
+        if (norm3(rate) + norm3(rate + 3) > 1e-9)
+            return true;
     }
-    int status = linear_start(k->linear, k->self, k->f);
-    if (status == GIC_OK)
-        status = code->outputs(k->self);
-    if (status == GIC_OK)
-        memcpy(k->value, tape_array(k->self, code->output_offset), (size_t)unit->outputs * sizeof(double));
-    for (int e = 0; e < k->kc->elements && status == GIC_OK; ++e)
-        if (acts(k, axle, look, e))
-            status = linear_column(k->linear, k->self, LINEAR_INPUT, k->element + e, k->df, unit->outputs,
-                                   unit->element + e * unit->outputs, &jump);
-    for (int a = 0; &k->kc->axle[a] != axle; ++a)
-        port += k->kc->axle[a].wheels;
-    for (int i = 0; i < axle->wheels; ++i) {
-        KcPose pose;
-        kc_pose(&axle->wheel[i], look, &pose);
-        sub3(pose.contact, pose.centre, unit->arm[i]);
-        for (int c = 0; c < WRENCH && status == GIC_OK; ++c)
-            status = linear_column(k->linear, k->self, LINEAR_PORT, WRENCH * (port + i) + c, k->df, unit->outputs,
-                                   unit->wheel + (WRENCH * i + c) * unit->outputs, &jump);
+    return false;
+}
+
+/* The derivatives of all outputs, and of the first of them, by an input or a port. */
+static int differentiate(const Stand *stand, LinearKind kind, int number, double *out)
+{
+    bool jump;
+    return linear_column(stand->k->linear, stand->k->self, kind, number, stand->k->df, stand->outputs, out, &jump);
+}
+
+/* Six columns of a port. */
+static int by_port(const Stand *stand, int port, double *out)
+{
+    int status = GIC_OK;
+    for (int c = 0; c < WRENCH && status == GIC_OK; ++c)
+        status = differentiate(stand, LINEAR_PORT, WRENCH * port + c, out + c * stand->outputs);
+    return status;
+}
+
+/* stand->place += sign times the derivatives by coordinates. */
+static int by_places(const Stand *stand, double sign)
+{
+    const KcLook *look = stand->balance->look;
+    const gic_model *code = stand->k->engine->code;
+    int status = GIC_OK;
+    for (int c = 0; c < look->columns && status == GIC_OK; ++c) {
+        status = differentiate(stand, LINEAR_INPUT, code->coordinate_input[look->column[c]], stand->k->out);
+        for (int o = 0; o < stand->outputs; ++o)
+            stand->place[c * stand->outputs + o] += sign * stand->k->out[o];
     }
     return status;
 }
 
-/* out += a force and a torque at the centre of wheel i. */
-static void act(const Unit *unit, int i, const double force[3], const double torque[3], double *out)
+/* Forces and torques, of wheels and of bushings, into ports, those of elements into inputs. */
+static void put(const Stand *stand, const Acting *u)
 {
-    for (int c = 0; c < WRENCH; ++c)
-        for (int o = 0; o < unit->outputs; ++o)
-            out[o] += (c < 3 ? force[c] : torque[c - 3]) * unit->wheel[(WRENCH * i + c) * unit->outputs + o];
+    const KcJoints *k = stand->k;
+    double *input = tape_array(k->self, k->engine->code->input_offset);
+    double *port = tape_array(k->self, k->engine->code->port_offset);
+    for (int e = 0; e < k->kc->elements; ++e)
+        input[k->element + e] = u ? u->element[e] : 0;
+    for (int i = 0; i < stand->axle->wheels; ++i)
+        for (int c = 0; c < WRENCH; ++c)
+            port[WRENCH * (stand->port + i) + c] = u ? u->wheel[i][c] : 0;
+    for (int r = 0; r < 2 * k->kc->rubbers; ++r)
+        for (int c = 0; c < WRENCH && k->mount[r] >= 0; ++c)
+            port[WRENCH * k->mount[r] + c] = u ? u->mount[r][c] : 0;
 }
 
-/* The same of a force at the contact, on the carrier. */
-static void act_below(const Unit *unit, int i, const double force[3], double *out)
+/* B, and derivatives by places. Returns a status. */
+static int find_units(const Stand *stand, const Acting *u)
+{
+    const KcJoints *k = stand->k;
+    const gic_model *code = k->engine->code;
+    double *input = tape_array(k->self, code->input_offset);
+    for (int c = 0; c < code->coordinate_count; ++c) {
+        input[code->coordinate_input[c]] = stand->balance->w[c];
+        input[code->coordinate_input[c] + 1] = input[code->coordinate_input[c] + 2] = 0;
+    }
+    memset(stand->place, 0, (size_t)(stand->balance->m * stand->outputs) * sizeof *stand->place);
+    put(stand, u);
+    int status = linear_start(k->linear, k->self, k->f);
+    if (status == GIC_OK)
+        status = by_places(stand, 1);
+    put(stand, NULL);
+    if (status == GIC_OK)
+        status = linear_start(k->linear, k->self, k->f);
+    if (status == GIC_OK)
+        status = code->outputs(k->self);
+    if (status == GIC_OK)
+        status = by_places(stand, -1);
+    memcpy(k->value, tape_array(k->self, code->output_offset), (size_t)stand->outputs * sizeof(double));
+    for (int e = 0; e < k->kc->elements && status == GIC_OK; ++e)
+        if (acts(stand, e))
+            status = differentiate(stand, LINEAR_INPUT, k->element + e, stand->element + e * stand->outputs);
+    for (int i = 0; i < stand->axle->wheels && status == GIC_OK; ++i)
+        status = by_port(stand, stand->port + i, stand->wheel + WRENCH * i * stand->outputs);
+    for (int r = 0; r < 2 * k->kc->rubbers && status == GIC_OK; ++r)
+        if (k->mount[r] >= 0 && bends(stand, r / 2))
+            status = by_port(stand, k->mount[r], stand->mount + WRENCH * r * stand->outputs);
+    return status;
+}
+
+/* ---- what acts -------------------------------------------------------------------------------------------- */
+
+static Acting nothing_acts(const KcJoints *k)
+{
+    Acting u = {.element = k->acting};
+    u.mount = (double(*)[WRENCH])(k->acting + k->kc->elements + 1);
+    memset(k->acting, 0, ((size_t)k->kc->elements + 1 + 2 * WRENCH * (size_t)k->kc->rubbers) * sizeof *k->acting);
+    return u;
+}
+
+/* A force on wheel i at the contact, on the carrier. */
+static void push(const Stand *stand, int i, const double force[3], Acting *u)
 {
     double torque[3];
-    cross3(unit->arm[i], force, torque);
-    act(unit, i, force, torque, out);
+    cross3(stand->arm[i], force, torque);
+    add3(u->wheel[i], force, u->wheel[i]);
+    add3(u->wheel[i] + 3, torque, u->wheel[i] + 3);
 }
 
-/* out with forces of the pads, so that no travel coordinate needs one. pads: [wheels]. */
-static bool put_pads(const KcJoints *k, const KcAxle *axle, const Unit *unit, double *out, double *pads)
+/* Elements, bushings and pads where the axle balances. */
+static Acting all_that_acts(const Stand *stand)
 {
-    static const double up[3] = {0, 0, 1};
-    const int n = axle->wheels;
-    double A[KC_WHEELS * KC_WHEELS], one[unit->outputs + 1];
-    for (int i = 0; i < n; ++i) {
-        memset(one, 0, sizeof one);
-        act_below(unit, i, up, one);
-        for (int a = 0; a < n; ++a)
-            A[a * n + i] = one[k->drive + axle->travel[a]];
-        pads[i] = -out[k->drive + axle->travel[i]];
+    const KcJoints *k = stand->k;
+    const KcLook *look = stand->balance->look;
+    const double still[KC_COLUMNS] = {0};
+    Acting u = nothing_acts(k);
+    for (int e = 0; e < k->kc->elements; ++e)
+        if (acts(stand, e))
+            u.element[e] = look->value[k->kc->element[e].force];
+    for (int i = 0; i < stand->axle->wheels; ++i)
+        push(stand, i, (double[3]){0, 0, stand->balance->force[i]}, &u);
+    for (int r = 0; r < k->kc->rubbers; ++r) {
+        KcWrench wrench;
+        if (!bends(stand, r))
+            continue;
+        kc_rubber_wrench(&k->kc->rubber[r], look, still, &wrench);
+        memcpy(u.mount[2 * r], wrench.on, sizeof wrench.on);
     }
-    if (!kc_solve(n, A, pads))
-        return false;
-    for (int i = 0; i < n; ++i) {
-        const double force[3] = {0, 0, pads[i]};
-        act_below(unit, i, force, out);
-    }
-    return true;
+    return u;
 }
 
-static void load(const KcAxle *axle, const Unit *unit, KcLoad of, bool opposed, double *out)
+static void load_wheel(const Stand *stand, int i, KcLoad of, double size, Acting *u)
 {
-    static const double none[3] = {0};
-    for (int i = 0; i < axle->wheels; ++i) {
-        const double size = opposed ? axle->wheel[i].side : 1;
-        const double aside[3] = {0, size, 0}, forward[3] = {size, 0, 0}, up[3] = {0, 0, size};
-        switch (of) {
-        case KC_LATERAL: act_below(unit, i, aside, out); break;
-        case KC_LONGITUDINAL: act_below(unit, i, forward, out); break;
-        case KC_ALIGNING: act(unit, i, none, up, out); break;
-        case KC_HUB_LATERAL: act(unit, i, aside, none, out); break;
-        case KC_HUB_VERTICAL: act(unit, i, up, none, out); break;
-        default: act(unit, i, forward, none, out); break;
-        }
+    double *force = u->wheel[i];
+    switch (of) {
+    case KC_LATERAL: push(stand, i, (double[3]){0, size, 0}, u); break;
+    case KC_LONGITUDINAL: push(stand, i, (double[3]){size, 0, 0}, u); break;
+    case KC_VERTICAL: break; /* the pads', which grow by it */
+    case KC_ALIGNING: force[5] += size; break;
+    case KC_HUB_LATERAL: force[1] += size; break;
+    case KC_HUB_VERTICAL: force[2] += size; break;
+    default: force[0] += size; break;
     }
 }
 
-static void carry(const KcJoints *k, const KcAxle *axle, const double *out, KcCarried *carried)
+/* What a load changes: itself, the pads' forces, and what elements, bushings and the places of the pads change while
+ * the axle gives way. change: of kc_balance_give(). */
+static Acting all_that_changes(const Stand *stand, KcLoad load, bool opposed, const double *change)
 {
+    const KcJoints *k = stand->k;
+    const KcBalance *balance = stand->balance;
+    const KcLook *look = balance->look;
+    double along[KC_COLUMNS] = {0};
+    Acting u = nothing_acts(k);
+    memcpy(along, change, (size_t)balance->m * sizeof *along);
+    for (int e = 0; e < k->kc->elements; ++e)
+        for (int c = 0; c < look->columns && acts(stand, e); ++c)
+            u.element[e] += along[c] * look->slope[c * look->outputs + k->kc->element[e].force];
+    for (int i = 0; i < stand->axle->wheels; ++i) {
+        KcPose rate;
+        double arm[3], torque[3];
+        load_wheel(stand, i, load, opposed ? stand->axle->wheel[i].side : 1, &u);
+        push(stand, i, (double[3]){0, 0, change[balance->m + i]}, &u);
+        kc_rate(&stand->axle->wheel[i], look, &balance->pose[i], along, &rate);
+        sub3(rate.contact, rate.centre, arm);
+        cross3(arm, (double[3]){0, 0, balance->force[i]}, torque);
+        add3(u.wheel[i] + 3, torque, u.wheel[i] + 3);
+    }
+    for (int r = 0; r < k->kc->rubbers; ++r) {
+        KcWrench wrench;
+        if (!bends(stand, r))
+            continue;
+        kc_rubber_wrench(&k->kc->rubber[r], look, along, &wrench);
+        memcpy(u.mount[2 * r], wrench.rate, sizeof wrench.rate);
+    }
+    return u;
+}
+
+/* out = B u */
+static void respond(const Stand *stand, const Acting *u, double *out)
+{
+    const int outputs = stand->outputs;
+    memset(out, 0, (size_t)outputs * sizeof *out);
+    for (int o = 0; o < outputs; ++o) {
+        for (int e = 0; e < stand->k->kc->elements; ++e)
+            if (u->element[e] != 0)
+                out[o] += u->element[e] * stand->element[e * outputs + o];
+        for (int i = 0; i < stand->axle->wheels; ++i)
+            for (int c = 0; c < WRENCH; ++c)
+                out[o] += u->wheel[i][c] * stand->wheel[(WRENCH * i + c) * outputs + o];
+        for (int r = 0; r < 2 * stand->k->kc->rubbers; ++r)
+            for (int c = 0; c < WRENCH && stand->k->mount[r] >= 0; ++c)
+                if (u->mount[r][c] != 0)
+                    out[o] += u->mount[r][c] * stand->mount[(WRENCH * r + c) * outputs + o];
+    }
+}
+
+/* ---- what carries ----------------------------------------------------------------------------------------- */
+
+static void carry(const Stand *stand, const Acting *u, const double *out, KcCarried *carried)
+{
+    const KcJoints *k = stand->k;
     for (int j = 0; j < k->joints; ++j) {
         KcCarried *at = &carried[j];
-        copy3(out + 6 * j, at->force);
-        copy3(out + 6 * j + 3, at->torque);
+        const double *on = j < k->reactions ? out + 6 * j : u->mount[2 * (j - k->reactions) + 1];
+        copy3(on, at->force);
+        copy3(on + 3, at->torque);
         at->along = NAN;
-        if (k->rod[j] >= 0) { /* the second body is drawn to the first one */
+        if (k->rod[j] >= 0) { /* the second body is drawn to the first one, along the line, also while that turns */
             double line[3];
             sub3(k->value + k->rod[j], k->value + k->rod[j] + 3, line);
             at->along = dot3(at->force, line) / norm3(line);
@@ -246,110 +402,72 @@ static void carry(const KcJoints *k, const KcAxle *axle, const double *out, KcCa
     }
     carried[k->joints] = (KcCarried){.force = {NAN, NAN, NAN},
                                      .torque = {NAN, NAN, NAN},
-                                     .along = axle->steer >= 0 ? out[k->drive + axle->steer] : NAN};
+                                     .along = stand->axle->steer >= 0 ? out[k->drive + stand->axle->steer] : NAN};
 }
 
-/* What springs make, with the pads. springs: [outputs]. Returns a status. */
-static int by_springs(const KcJoints *k, const KcAxle *axle, const double *w, KcLook *look, Unit *unit, double *springs,
-                      double *pads)
-{
-    int status = kc_look(k->kc, w, look);
-    if (status == GIC_OK)
-        status = find_units(k, axle, w, look, unit);
-    memset(springs, 0, (size_t)unit->outputs * sizeof *springs);
-    for (int e = 0; e < k->kc->elements && status == GIC_OK; ++e)
-        for (int o = 0; o < unit->outputs && acts(k, axle, look, e); ++o)
-            springs[o] += look->value[k->kc->element[e].force] * unit->element[e * unit->outputs + o];
-    if (status == GIC_OK && !put_pads(k, axle, unit, springs, pads))
-        status = GIC_ERROR_SINGULAR;
-    return status;
-}
-
+/* What is known of no joint. */
 static KcCarried nothing_known(void)
 {
     return (KcCarried){.force = {NAN, NAN, NAN}, .torque = {NAN, NAN, NAN}, .along = NAN};
 }
 
-static void add(const KcCarried *a, double scale, KcCarried *sum)
+/* Of one load. Returns NULL, or why nothing is known. */
+static const char *by_load(const Stand *stand, KcLoad load, bool opposed, KcCarried *carried)
 {
-    add_scaled3(scale, a->force, sum->force);
-    add_scaled3(scale, a->torque, sum->torque);
-    sum->along += scale * a->along;
+    const KcJoints *k = stand->k;
+    double change[KC_BALANCE];
+    const char *why = kc_balance_give(stand->balance, load, opposed, load == KC_VERTICAL, change);
+    for (int j = 0; j <= k->joints && why && load == KC_VERTICAL; ++j)
+        carried[j] = nothing_known();
+    if (why)
+        return load == KC_VERTICAL ? NULL : why;
+    const Acting u = all_that_changes(stand, load, opposed, change);
+    respond(stand, &u, k->out);
+    for (int c = 0; c < stand->balance->m; ++c)
+        for (int o = 0; o < stand->outputs; ++o)
+            k->out[o] += change[c] * stand->place[c * stand->outputs + o];
+    carry(stand, &u, k->out, carried);
+    return NULL;
 }
 
-/* One newton more on the pads, which the springs take: central differences over a small travel of each wheel. Returns a
- * status. */
-static int vertical(const KcJoints *k, const KcAxle *axle, const double *w, const KcLook *here, Unit *unit,
-                    KcCarried *carried)
+const char *kc_joints_refusal(const KcJoints *k, const KcAxle *axle)
 {
-    static const double step = 1e-5; /* m */
-    const int n = axle->wheels, all = k->joints + 1;
-    const size_t size = (size_t)k->kc->model->coordinates * sizeof *w;
-    double A[KC_WHEELS * KC_WHEELS] = {0}, *there = pool_alloc(k->kc->pool, size), out[unit->outputs + 1];
-    KcCarried *slope = pool_alloc(k->kc->pool, ((size_t)(n * all) + 1) * sizeof *slope), end[all];
-    KcLook *look = kc_look_new(k->kc, axle);
-    for (int a = 0; a < n; ++a) {
-        double vz[KC_WHEELS] = {0}, along[KC_WHEELS + 1], pads[KC_WHEELS];
-        vz[a] = 1;
-        if (!kc_along(axle, here, false, vz, 0, along))
-            return GIC_ERROR_SINGULAR;
-        for (int side = -1; side <= 1; side += 2) {
-            memcpy(there, w, size);
-            kc_move(here, along, side * step, there);
-            const int status = by_springs(k, axle, there, look, unit, out, pads);
-            if (status != GIC_OK)
-                return status;
-            carry(k, axle, out, end);
-            for (int i = 0; i < n; ++i)
-                A[i * n + a] += side * pads[i] / (2 * step);
-            for (int j = 0; j < all; ++j)
-                add(&end[j], side / (2 * step), &slope[a * all + j]);
-        }
-    }
-    for (int opposed = 0; opposed < 2; ++opposed) {
-        KcCarried *to = carried + (KC_BY_LOADS + 2 * KC_VERTICAL + opposed) * all;
-        double travel[KC_WHEELS], again[KC_WHEELS * KC_WHEELS];
-        memcpy(again, A, sizeof A);
-        for (int i = 0; i < n; ++i)
-            travel[i] = opposed ? axle->wheel[i].side : 1;
-        const bool held = kc_solve(n, again, travel) && gic_finite(travel, n);
-        for (int j = 0; j < all; ++j) {
-            to[j] = held ? (KcCarried){.along = 0} : nothing_known();
-            for (int a = 0; a < n && held; ++a)
-                add(&slope[a * all + j], travel[a], &to[j]);
-        }
-    }
-    return GIC_OK;
+    (void)axle;
+    return kc_rubber_formula(k->kc) ? pool_print(k->kc->pool,
+                                                 "bushing '%s' has a formula, of which no stiffness is "
+                                                 "known; give it `stiffness`",
+                                                 kc_rubber_formula(k->kc))
+                                    : NULL;
 }
 
-const char *kc_joints_refusal(const KcAxle *axle)
+const char *kc_joints_at(const KcJoints *k, const KcAxle *axle, const double *w, KcCarried *carried)
 {
-    return axle->preload
-               ? "its wheels hang on rubber, which shares loads among joints by its stiffness; outputs of type "
-                 "`reaction` tell what these carry in a scene"
-               : NULL;
-}
-
-int kc_joints_at(const KcJoints *k, const KcAxle *axle, const double *w, KcCarried *carried, double *pads)
-{
-    const int all = k->joints + 1;
-    Unit unit = {.outputs = k->model->output_components, .element = k->by_element, .wheel = k->by_wheel};
-    double force[KC_WHEELS], *out = k->out;
-    KcLook *look = kc_look_new(k->kc, axle);
-    int status = by_springs(k, axle, w, look, &unit, out, pads ? pads : force);
+    KcBalance *balance = k->balance[axle - k->kc->axle];
+    Stand stand = {.k = k,
+                   .axle = axle,
+                   .balance = balance,
+                   .outputs = k->model->output_components,
+                   .port = k->port,
+                   .element = k->by_element,
+                   .wheel = k->by_wheel,
+                   .mount = k->by_mount,
+                   .place = k->by_place};
+    const char *why = kc_balance_at(balance, w);
+    if (why)
+        return why;
+    for (const KcAxle *before = k->kc->axle; before != axle; ++before)
+        stand.port += before->wheels;
+    for (int i = 0; i < axle->wheels; ++i)
+        sub3(balance->pose[i].contact, balance->pose[i].centre, stand.arm[i]);
+    const Acting u = all_that_acts(&stand);
+    const int status = find_units(&stand, &u);
     if (status != GIC_OK)
-        return status;
-    carry(k, axle, out, carried);
-    for (int by = KC_BY_LOADS; by < KC_CASES; ++by) {
-        if (kc_case_load(by) == KC_VERTICAL)
-            continue;
-        memset(out, 0, (size_t)unit.outputs * sizeof *out);
-        load(axle, &unit, kc_case_load(by), kc_case_opposed(by), out);
-        if (!put_pads(k, axle, &unit, out, force))
-            return GIC_ERROR_SINGULAR;
-        carry(k, axle, out, carried + by * all);
-    }
-    return vertical(k, axle, w, look, &unit, carried);
+        return instance_status(k->kc->pool, k->engine->code, &k->self->head, status);
+    respond(&stand, &u, k->out);
+    carry(&stand, &u, k->out, carried);
+    for (int by = KC_BY_LOADS; by < KC_CASES && !why; ++by)
+        why = by_load(&stand, kc_case_load(by), kc_case_opposed(by), carried + by * (k->joints + 1));
+    return why;
 }
 
 /* ---- names ---------------------------------------------------------------------------------------------- */

@@ -5,7 +5,7 @@
 #ifndef RUN_KC_JOINTS_H
 #define RUN_KC_JOINTS_H
 
-#include "run/kc.h"
+#include "run/kc_balance.h"
 
 /* What makes the forces: springs, stops and formulas with the pads that hold them, N; then loads of kc_load_name in
  * phase and opposed, by a unit of the load on each wheel. */
@@ -14,9 +14,9 @@ enum { KC_BY_SPRINGS, KC_BY_LOADS, KC_CASES = 1 + 2 * KC_LOADS };
 KcLoad kc_case_load(int by);
 bool kc_case_opposed(int by);
 
-/* On the second body of a joint: force in the axes of the world, torque about the joint's point. along: the tension of
- * a rod between two points; of the coordinate that steers, in place of the rest, what holds it, along itself. NAN: it
- * has no such number. */
+/* On the second body of a joint or bushing: force in the axes of the world, torque about its point. along: the tension
+ * of a rod between two points; of the coordinate that steers, in place of the rest, what holds it, along itself. NAN:
+ * it has no such number. */
 typedef struct KcCarried {
     double force[3], torque[3], along;
 } KcCarried;
@@ -28,20 +28,22 @@ typedef struct KcJoints {
     const Linear *linear;
     Instance *self;
     int element, drive, port; /* the first input of elements, output of drives, port of wheels */
+    int *mount;               /* [bushings][2] port of what a bushing exerts on a body; -1: that is the ground */
     int *rod;                 /* [joints] place among outputs of both ends of a rod; -1: it is none */
     const char **name;        /* [joints] */
-    int joints;
-    double *value;                                /* [outputs] at the place */
-    double *f, *df, *out, *by_element, *by_wheel; /* work */
+    int joints, reactions;    /* joints of the model, which come first, and bushings; joints alone */
+    KcBalance **balance;      /* [axles] NULL: the axle can not be moved */
+    double *value;            /* [outputs] at the place */
+    double *f, *df, *out, *by_element, *by_wheel, *by_mount, *by_place, *acting; /* work */
 } KcJoints;
 
 KcJoints *kc_joints_open(Pool *pool, const Model *model, const Scene *scene, Solve solve, const Kc *kc);
 /* Why nothing is known of the joints of an axle that can be moved; NULL: it is. */
-const char *kc_joints_refusal(const KcAxle *axle);
-/* What joints and the steering of an axle carry at coordinates w: carried [KC_CASES][joints + 1], the last one the
- * steering. pads: [wheels] forces by springs, N; NULL: not asked for. Cases without a value are NAN. Returns a status.
- */
-int kc_joints_at(const KcJoints *joints, const KcAxle *axle, const double *w, KcCarried *carried, double *pads);
+const char *kc_joints_refusal(const KcJoints *joints, const KcAxle *axle);
+/* What joints and the steering of an axle carry at coordinates w, from which an axle on rubber settles: carried
+ * [KC_CASES][joints + 1], the last one the steering. Cases without a value are NAN. Returns NULL, or why nothing is
+ * known there. */
+const char *kc_joints_at(const KcJoints *joints, const KcAxle *axle, const double *w, KcCarried *carried);
 /* Does a load reach joint j at a position? */
 bool kc_joint_seen(const KcJoints *joints, const KcCarried *carried, int j);
 /* The name of joint j, or of the axle's steering. */

@@ -20,7 +20,8 @@ typedef struct Carrying {
     const KcStudy *study;
     const KcJoints *joints;
     KcCarried *(*at)[KC_MOTIONS]; /* [axles] of [rows][KC_CASES][joints + 1]; NULL: no such motion */
-    bool *seen;                   /* [axles][joints + 1] */
+    bool *seen;                   /* [axles][joints + 1] at the positions that are looked at */
+    bool set_up_alone;            /* only the rows at set-up that tables show are looked at */
 } Carrying;
 
 /* Cases that tables and pages show, and by how much of the load. The first DRAWN are those of pages. */
@@ -72,26 +73,32 @@ static void find_all(Carrying *c, const Kc *kc)
     const size_t size = (size_t)KC_CASES * (size_t)(k->joints + 1);
     c->at = pool_alloc(c->pool, (size_t)kc->axles * sizeof *c->at);
     c->seen = pool_alloc(c->pool, (size_t)kc->axles * (size_t)(k->joints + 1) * sizeof *c->seen);
-    for (int a = 0; a < kc->axles; ++a)
+    for (int a = 0; a < kc->axles; ++a) {
+        bool done = false;
         for (KcMotion m = 0; m < KC_MOTIONS; ++m) {
-            const KcCurve *curve = kc_joints_refusal(&kc->axle[a]) ? NULL : c->study->curve[a][m];
-            c->at[a][m] = curve ? pool_alloc(c->pool, (size_t)curve->rows * size * sizeof(KcCarried)) : NULL;
-            for (int r = 0; curve && r < curve->rows; ++r) {
+            const KcCurve *curve = kc_joints_refusal(k, &kc->axle[a]) ? NULL : c->study->curve[a][m];
+            c->at[a][m] = curve && !done ? pool_alloc(c->pool, (size_t)curve->rows * size * sizeof(KcCarried)) : NULL;
+            for (int r = 0; c->at[a][m] && r < curve->rows; ++r) {
+                if (c->set_up_alone && r != curve->zero)
+                    continue;
                 KcCarried *to = c->at[a][m] + (size_t)r * size;
-                const int status = kc_joints_at(k, &kc->axle[a], curve->row[r].w, to, NULL);
-                if (status != GIC_OK)
+                const char *why = kc_joints_at(k, &kc->axle[a], curve->row[r].w, to);
+                if (why)
                     diag_fail((Place){kc->model->source, 0, 0}, NULL, "axle %s, %s: %s", kc->axle[a].name,
-                              kc_motion_name[m], instance_status(c->pool, k->engine->code, &k->self->head, status));
+                              kc_motion_name[m], why);
                 for (int j = 0; j <= k->joints; ++j)
                     seen_of(c, a)[j] = seen_of(c, a)[j] || kc_joint_seen(k, to, j);
             }
+            done = c->set_up_alone && c->at[a][m];
         }
+    }
 }
 
 static Carrying open_all(Pool *pool, const Model *model, const Scene *scene, const Request *request,
                          const KcStudy *study)
 {
     Carrying c = {.pool = pool, .study = study};
+    c.set_up_alone = request->compare || (!request->results && !request->report);
     KcMotion motion;
     int row;
     c.joints = kc_joints_open(pool, model, scene, request->solve, study->kc);
@@ -101,7 +108,7 @@ static Carrying open_all(Pool *pool, const Model *model, const Scene *scene, con
             return c;
     diag_fail((Place){model->source, 0, 0}, "name an axle whose joints hold its wheels",
               "no axle of model '%s' has joints whose loads are known: %s: %s", model->name, study->kc->axle[0].name,
-              kc_joints_refusal(&study->kc->axle[0]));
+              kc_joints_refusal(c.joints, &study->kc->axle[0]));
 }
 
 /* ---- a table -------------------------------------------------------------------------------------------- */
@@ -112,8 +119,8 @@ static void print_axle(Text *out, const Carrying *c, int a)
     KcMotion motion;
     int row;
     text_print(out, "\n%s\n", axle->name);
-    if (kc_joints_refusal(axle))
-        text_print(out, "  not there: %s\n", kc_joints_refusal(axle));
+    if (kc_joints_refusal(c->joints, axle))
+        text_print(out, "  not there: %s\n", kc_joints_refusal(c->joints, axle));
     if (!usual(c, a, &motion, &row))
         return;
     text_print(out, "  %-18s", "N; steering N, N m");
@@ -280,8 +287,9 @@ static void write_axles(void *context, Text *out, int indent)
     kc_stops_html(out, c->study, NULL);
     for (int a = 0; a < c->study->kc->axles; ++a) {
         text_print(out, "<h2>Axle: %s</h2>\n", c->study->kc->axle[a].name);
-        if (kc_joints_refusal(&c->study->kc->axle[a]))
-            text_print(out, "<p class=\"stop\">not there: %s</p>\n", kc_joints_refusal(&c->study->kc->axle[a]));
+        if (kc_joints_refusal(c->joints, &c->study->kc->axle[a]))
+            text_print(out, "<p class=\"stop\">not there: %s</p>\n",
+                       kc_joints_refusal(c->joints, &c->study->kc->axle[a]));
         for (KcMotion m = 0; m < KC_MOTIONS; ++m)
             if (c->at[a][m])
                 draw_motion(out, c, a, c->study->curve[a][m]);

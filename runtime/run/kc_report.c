@@ -16,7 +16,8 @@ KcStudy kc_study(Pool *pool, const Model *model, const Scene *scene, const Reque
 {
     const Kc *kc = kc_open(pool, model, scene, request->solve, request->axle, true);
     KcStudy study = {.kc = kc, .travel = request->travel > 0 ? request->travel : kc_usual_travel};
-    kc_warn(kc);
+    if (!request->joints)
+        kc_warn(kc);
     study.curve = pool_alloc(pool, (size_t)kc->axles * sizeof *study.curve);
     study.refusal = pool_alloc(pool, (size_t)kc->axles * sizeof *study.refusal);
     for (int a = 0; a < kc->axles; ++a)

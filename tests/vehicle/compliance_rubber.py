@@ -321,13 +321,14 @@ def rates(model, axle):
             check(f"{axle}: rate of {wheel}, {opposed}", abs(give["contact_z"]) * rate, 1, 1e-9)
 
 
-on_paper()
-hatchback = os.path.join(models, "hatchback.veh")
-front = [b + s for b in ("arm", "strut", "lever") for s in ("_l", "_r")]
-for axle, bodies in (("front", ["subframe", "gear", "rack", *front]), ("rear", ["trail_l", "trail_r"])):
-    mine, wheels = against_statics(hatchback, axle, bodies)
-    reciprocal(axle, mine, wheels)
-for axle in ("front", "rear"):
-    rates(os.path.join(models, "hmmwv_vehicle.veh"), axle)
-print(f"{passed} passed, {failed} failed")
-sys.exit(failed > 0 or passed < 700)
+if __name__ == "__main__":
+    on_paper()
+    hatchback = os.path.join(models, "hatchback.veh")
+    front = [b + s for b in ("arm", "strut", "lever") for s in ("_l", "_r")]
+    for axle, bodies in (("front", ["subframe", "gear", "rack", *front]), ("rear", ["trail_l", "trail_r"])):
+        mine, wheels = against_statics(hatchback, axle, bodies)
+        reciprocal(axle, mine, wheels)
+    for axle in ("front", "rear"):
+        rates(os.path.join(models, "hmmwv_vehicle.veh"), axle)
+    print(f"{passed} passed, {failed} failed")
+    sys.exit(failed > 0 or passed < 700)
