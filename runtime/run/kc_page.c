@@ -175,6 +175,16 @@ void kc_stops_html(Text *out, const KcStudy *study, const char *who)
         axle_stops(out, study, a, who);
 }
 
+static const Insertion none[] = {{NULL, NULL}};
+static const Insertions figure_points = {(const char *const[]){"kc_figures.html.in", NULL}, none, NULL};
+
+/* A figure for each column of the files, drawn by tests/tools/kc_figures.py. */
+static void write_figures(Pool *pool, Text *out, const char *name)
+{
+    templates_check(pool, NULL, (const Insertions *const[]){&figure_points, NULL});
+    template_expand(pool, out, NULL, "kc_figures.html.in", name, NULL, &figure_points, NULL);
+}
+
 static void write_axles(void *context, Text *out, int indent)
 {
     Page *page = context;
@@ -191,6 +201,7 @@ static void write_axles(void *context, Text *out, int indent)
             if (page->study->curve[a][m])
                 motion(page, out, a, page->study->curve[a][m]);
     }
+    write_figures(page->pool, out, page->study->kc->model->name);
 }
 
 static void write_identity(void *context, Text *out, int indent)
@@ -205,7 +216,6 @@ static void write_identity(void *context, Text *out, int indent)
 
 static const Insertion points[] = {{"identity", write_identity}, {"axles", write_axles}, {NULL, NULL}};
 static const Insertions page_points = {(const char *const[]){"kc.html.in", NULL}, points, NULL};
-
 void kc_page(Pool *pool, const KcStudy *study, const char *path)
 {
     Page page = {pool, study};

@@ -115,6 +115,22 @@ check 'no curve has something else than numbers' sh -c "! grep -qiE '[^a-z](nan|
 check 'curves' [ "$(grep -c '<polyline' "$work/kc.html")" -gt 150 ]
 check 'what stops is on the page' grep -q 'stop at a travel of -58.97 mm' "$work/kc.html"
 
+# each column of the files has its figure: drawn as committed, on the page and in models/KC.md
+check 'figures are as they are drawn' python "$root/tests/tools/kc_figures.py" "$root" --check
+run --kc --axle front "$models/hmmwv_vehicle.veh" -q -o "$work/columns.csv" --report "$work/figures.html"
+head -1 "$work/columns.csv" | tr , '\n' | sed 's/ \[.*//' | sed -e '1,2d' -e '4d' -e 's/^.*\.ratio\..*/motion_ratio/' -e 's/^.*\.//' | sort -u >"$work/columns"
+check 'columns are there' [ "$(wc -l <"$work/columns")" -gt 36 ]
+without=
+while read -r column; do
+    grep -q "<figcaption>$column</figcaption>" "$work/figures.html" && grep -q "(kc/$column.svg)" "$models/KC.md" &&
+        grep -q "<title>$column</title>" "$models/kc/$column.svg" || without="$without $column"
+done <"$work/columns"
+check "each column has a figure:$without" [ -z "$without" ]
+run --kc --loads --axle front "$models/hmmwv_vehicle.veh" -q -o "$work/loads.csv"
+for column in $(head -1 "$work/loads.csv" | tr , '\n' | sed 1,5d | grep -v '^force$'); do
+    check "compliance: $column has a figure" grep -q "[> ]${column}[,< ]" "$models/kc/gives.svg"
+done
+
 # two vehicles at set-up: one beside itself has no differences; numbers are those of the rows at travel 0
 run --kc --compare "$models/hmmwv.veh" "$models/hmmwv.veh"
 check 'a vehicle beside itself' sh -c "test -s '$work/out' && ! grep -q '\*$' '$work/out'"
