@@ -42,9 +42,9 @@ static int guard_back(Back *back, const TrailEvent *change, double by_share)
 int gear_back(Back *back, const TrailStep *step)
 {
     const TangentRun *run = back->run;
-    const int parts = tangent_parts(run), states = run->states, there = step->gear;
+    const int parts = tangent_parts(run, step->dual), states = run->states, there = step->gear;
     const TrailEvent *settled = trail_event(run->trail, there + 1), *change = trail_event(run->trail, there + 2);
-    const double h = run->scene->step, *bend = change->number + states;
+    const double h = step->length, *bend = change->number + states;
     int status = GIC_OK;
     double none[states + 1], by_share = 0;
     memset(none, 0, sizeof none);

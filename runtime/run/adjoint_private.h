@@ -22,6 +22,7 @@ typedef struct Back {
     double *moment;         /* [fast steps and 2 before][states] work of dual rate */
     double *derivative;     /* [variables] of inputs */
     double *parameter;      /* [parameters] */
+    DriveSlope drive;       /* by what the driver keeps */
     double value;           /* the number itself */
 } Back;
 
@@ -39,6 +40,15 @@ int event_back(Back *back, const TrailEvent *event, double weight, const Knot *k
 void settle_back(Back *back, const TrailEvent *settled);
 /* Back through a right-hand side with derivatives by its rate; those by the state are in linear->along.y. */
 int rate_back(Back *back, const TrailEvent *call, const double *by_rate, double weight, const Knot *knot);
+/* The same of the state that a sample sees, by all outputs of the model [output_count]. */
+int outputs_back(Back *back, const TrailEvent *event, const double *by_output);
+/* adjoint_sample.c: back through samples of controllers, the first of two events; weight: of the output before them.
+ * Returns a status. */
+int sample_back(Back *back, int event, double weight);
+/* Add derivatives by the inputs at a time to those by the driver's movements; back through a look, to the driver before
+ * it. */
+void drive_inputs_back(Back *back, double time, const double *by, const Knot *knot);
+void drive_look_back(Back *back, const TrailEvent *look);
 /* Add derivatives by the inputs at a time to those by the numbers of profiles. */
 void inputs_back(Back *back, double time, const double *by, const Knot *knot);
 /* Back through a step of RK4 of h seconds, whose right-hand sides are four events from `event` on, and then its state.

@@ -13,6 +13,31 @@
 
 const double adjoint_most = 100e6;
 
+/* True if a time is a multiple of the step, but for rounding. */
+static bool is_whole(double time, double step)
+{
+    const double steps = time / step;
+    return fabs(steps - round(steps)) < GIC_LIMIT_ROUNDING * (1 + steps);
+}
+
+/* Times in a step at which controllers do something; *within: some are not at its ends. */
+static double instants_of(const Model *model, double step, bool *within)
+{
+    double instants = 0;
+    *within = false;
+    for (int c = 0; c < model->controllers; ++c) {
+        const Controller *controller = &model->controller[c];
+        instants += step / controller->period;
+        *within = *within || !is_whole(controller->period, step) || !is_whole(controller->offset, step);
+        for (int i = 0; i < controller->rules; ++i) {
+            const ControlRule *rule = &controller->rule[i];
+            instants += rule->effects < 0 ? 0 : step / controller->period;
+            *within = *within || !is_whole(rule->late, step);
+        }
+    }
+    return instants;
+}
+
 bool adjoint_fits(const Model *model, const Scene *scene)
 {
     const int base = model->free_base ? BASE_STATES : 0, links = LINK_NUMBERS * model->wheels;
@@ -21,14 +46,24 @@ bool adjoint_fits(const Model *model, const Scene *scene)
     const double around = 4 * (double)sizeof(double) + sizeof(TrailEvent), settled = sizeof(TrailEvent);
     const double rate = numbers * (double)sizeof(double) + around;
     const double fast = (model->inputs + model->fast_states + links) * (double)sizeof(double) + around;
-    const double step = dual ? 2 * rate + settled + (scene->ratio - 1) * fast
-                             : (scene->method == GIC_RK4 ? RK4_STAGES : 1) * rate + settled;
-    return (step + 2 * sizeof(TrailStep)) * (double)(scene->outputs * scene->per_output) <= adjoint_most;
+    bool within;
+    const double instants = instants_of(model, scene->step, &within), part = RK4_STAGES * rate + settled;
+    const double looks = scene->driver ? fmin(1, scene->step / scene->driver->period) : 0;
+    const double seen = rate + DRIVE_RESULTS * (DRIVE_SEEN + DRIVE_SUMS) * (double)sizeof(double) +
+                        DRIVE_MOVEMENTS * (double)sizeof(Movement);
+    const double between = looks * seen + instants * 2 * rate;
+    const double whole = dual ? 2 * rate + settled + (scene->ratio - 1) * fast
+                              : (scene->method == GIC_RK4 ? RK4_STAGES : 1) * rate + settled;
+    const double step = between + (within ? fmax(whole, (instants + (dual ? scene->ratio : 1)) * part) : whole);
+    return (step + 2 * (1 + instants) * sizeof(TrailStep)) * (double)(scene->outputs * scene->per_output) <=
+           adjoint_most;
 }
 
 void inputs_back(Back *back, double time, const double *by, const Knot *knot)
 {
     const TangentRun *run = back->run;
+    if (run->scene->driver)
+        drive_inputs_back(back, time, by, knot);
     for (int k = 0; k < run->variables; ++k) {
         const RunVariable *v = &run->variable[k];
         double change[3], bent[3][3];
@@ -60,12 +95,42 @@ static int go_to(const Back *back, const TrailEvent *event)
     head->ahead = 0;
     memcpy(own + first, event->number, (size_t)states * sizeof *own);
     memcpy(run->linear->link[0], event->number + states, (size_t)links * sizeof *own);
-    memcpy(tape_array(run->self, code->input_offset), event->number + states + links,
+    memcpy(tape_array(run->self, code->input_offset), event->number + states + event->between,
            (size_t)run->inputs * sizeof(double));
     tangent_go(run, event);
     if (code->shift && tape_engage(run->self) != GIC_OK)
         return GIC_ERROR_INPUT;
     return fast ? GIC_OK : tape_locate(run->self, event->time, own, e);
+}
+
+/* Derivatives by state, inputs and parameters have been found: whether they are numbers, and those of all but the
+ * state. */
+static int pulled(Back *back, const TrailEvent *event, int status, const Knot *knot)
+{
+    const TangentRun *run = back->run;
+    const Direction *along = &run->linear->along;
+    const int parameters = run->code->parameter_count;
+    if (status == GIC_OK &&
+        !(gic_finite(along->y, run->states) && gic_finite(along->u, run->inputs) && gic_finite(along->p, parameters)))
+        status = GIC_ERROR_RESULT;
+    if (status != GIC_OK)
+        return status;
+    for (int i = 0; i < parameters; ++i)
+        back->parameter[i] += along->p[i];
+    inputs_back(back, event->time, along->u, knot);
+    return GIC_OK;
+}
+
+int outputs_back(Back *back, const TrailEvent *event, const double *by_output)
+{
+    const TangentRun *run = back->run;
+    const Linear *linear = run->linear;
+    const int outputs = run->code->output_count, status = go_to(back, event);
+    if (status != GIC_OK)
+        return status;
+    memset(linear->drate, 0, (size_t)run->states * sizeof *by_output);
+    memcpy(linear->drate + run->states, by_output, (size_t)outputs * sizeof *by_output);
+    return pulled(back, event, linear_pull(linear, run->self, LINEAR_RATE, outputs), NULL);
 }
 
 int event_back(Back *back, const TrailEvent *event, double weight, const Knot *knot)
@@ -74,26 +139,17 @@ int event_back(Back *back, const TrailEvent *event, double weight, const Knot *k
         [TRAIL_RATE] = LINEAR_RATE, [TRAIL_LINKS] = LINEAR_LINKS, [TRAIL_FAST] = LINEAR_FAST};
     const TangentRun *run = back->run;
     const Linear *linear = run->linear;
-    const gic_model *code = run->code;
     const int outputs = weight != 0;
     int status = go_to(back, event);
     if (status != GIC_OK)
         return status;
     linear->drate[run->states] = weight;
     status = linear_pull(linear, run->self, part[event->kind], outputs);
-    if (status == GIC_OK && !(gic_finite(linear->along.y, run->states) && gic_finite(linear->along.u, run->inputs) &&
-                              gic_finite(linear->along.p, code->parameter_count)))
-        status = GIC_ERROR_RESULT;
     if (status == GIC_OK && event->kind == TRAIL_RATE && !gic_finite(linear->rate, run->states + outputs))
         status = GIC_ERROR_RESULT;
-    if (status != GIC_OK)
-        return status;
-    if (outputs)
+    if (status == GIC_OK && outputs)
         back->value += weight * linear->rate[run->states];
-    for (int i = 0; i < code->parameter_count; ++i)
-        back->parameter[i] += linear->along.p[i];
-    inputs_back(back, event->time, linear->along.u, knot);
-    return GIC_OK;
+    return pulled(back, event, status, knot);
 }
 
 void adjoint_add(int count, double factor, const double *from, double *to)
@@ -206,7 +262,7 @@ int rk4_back(Back *back, int event, double h, const double *by_rate, double weig
 static int single_back(Back *back, const TrailStep *step, double weight)
 {
     const TangentRun *run = back->run;
-    const double h = run->scene->step;
+    const double h = step->length;
     const int calls = step->gear - step->first - 1;
     adjoint_add(run->states, 1, back->start_rate, back->rate[0]);
     settle_back(back, trail_event(run->trail, step->first + calls));
@@ -235,8 +291,12 @@ static int step_back(Back *back, const TrailStep *step, double weight)
     if (status == GIC_OK && step->knots > step->gear)
         status = gear_back(back, step);
     if (status == GIC_OK)
-        status = (tangent_dual(run) ? dual_back : single_back)(back, step, weight);
+        status = (step->dual ? dual_back : single_back)(back, step, step->sample < 0 ? weight : 0);
     adjoint_add(run->states, 1, back->from, back->state);
+    if (status == GIC_OK && step->sample >= 0)
+        status = sample_back(back, step->sample, weight);
+    if (step->look >= 0)
+        drive_look_back(back, trail_event(run->trail, step->look));
     return status;
 }
 
@@ -264,18 +324,20 @@ static Back back_new(TangentRun *run)
 int adjoint_find(TangentRun *run, AdjointWeight *weight, const void *context, double *value, double *derivative)
 {
     Back back = back_new(run);
-    const int64_t steps = trail_steps(run->trail);
+    const int64_t steps = trail_steps(run->trail), all = run->steps;
     double last[run->states + run->inputs];
     tangent_state(run, last);
-    TrailEvent end = {.time = tangent_time(run), .number = last, .kind = TRAIL_RATE};
+    TrailEvent end = {.time = tangent_time(run), .number = last, .kind = TRAIL_RATE}; /* nothing between */
     tangent_discrete(run, &end);
     int status = GIC_OK;
-    if (weight(context, steps) != 0) {
-        status = rate_back(&back, &end, back.sum, weight(context, steps), NULL);
+    if (weight(context, all) != 0) {
+        status = rate_back(&back, &end, back.sum, weight(context, all), NULL);
         memcpy(back.state, run->linear->along.y, (size_t)run->states * sizeof *back.state);
     }
-    for (int64_t i = steps - 1; i >= 0 && status == GIC_OK; --i)
-        status = step_back(&back, trail_step(run->trail, i), weight(context, i));
+    for (int64_t i = steps - 1; i >= 0 && status == GIC_OK; --i) {
+        const TrailStep *step = trail_step(run->trail, i);
+        status = step_back(&back, step, step->number < 0 ? 0 : weight(context, step->number));
+    }
     if (status != GIC_OK)
         return status;
     settle_back(&back, trail_event(run->trail, 0));

@@ -93,3 +93,25 @@ Model *formula_output(Pool *pool, const Model *from, const char *option, const c
     ++model->output_components;
     return model;
 }
+
+void formula_alone(Pool *pool, Model *model, int count)
+{
+    Output *output = NULL;
+    const Output *from = model->output + model->outputs - count;
+    const int others = model->outputs - count, room = model->outputs;
+    output = pool_alloc(pool, ((size_t)room + 1) * sizeof *output);
+    int outputs = 0, components = 0;
+    for (int i = 0; i < count; ++i) {
+        output[outputs] = from[i];
+        output[outputs].hidden = false;
+        components += output[outputs++].count;
+    }
+    for (int i = 0; i < others; ++i)
+        if (model->output[i].sampled) {
+            output[outputs] = model->output[i];
+            components += output[outputs++].count;
+        }
+    model->output = output;
+    model->outputs = outputs;
+    model->output_components = components;
+}

@@ -14,4 +14,8 @@ const char *formula_inside(Pool *pool, const char *text, const char *name);
  * option: in messages, "--gradient". Ends in diag_fail. */
 Model *formula_output(Pool *pool, const Model *from, const char *option, const char *name, const char *formula);
 
+/* Only the last `count` outputs of such a model, no longer hidden, are left, and behind them what its controllers read.
+ */
+void formula_alone(Pool *pool, Model *model, int count);
+
 #endif

@@ -9,8 +9,6 @@ Scalar scalar_read(Pool *pool, const Model *from, const char *text)
     const char *integral = formula_inside(pool, text, "integral"), *maximum = formula_inside(pool, text, "maximum");
     const char *formula = integral ? integral : maximum ? maximum : text;
     Model *model = formula_output(pool, from, "--gradient", "gradient", formula);
-    model->output += model->outputs - 1;
-    model->outputs = model->output_components = 1;
-    model->output->hidden = false;
+    formula_alone(pool, model, 1);
     return (Scalar){integral ? SCALAR_INTEGRAL : maximum ? SCALAR_MAXIMUM : SCALAR_END, model};
 }

@@ -34,10 +34,7 @@ static const Model *read_formulas(Search *s, const Model *from, const char *text
     Model *model = NULL;
     for (int i = 0; i < s->formulas; ++i)
         from = model = formula_output(s->pool, from, option, pool_print(s->pool, "formula %d", i + 1), formula[i]);
-    model->output += model->outputs - s->formulas;
-    model->outputs = model->output_components = s->formulas;
-    for (int i = 0; i < s->formulas; ++i)
-        model->output[i].hidden = false;
+    formula_alone(s->pool, model, s->formulas);
     s->formula = formula;
     return model;
 }

@@ -25,9 +25,9 @@ Cubic tangent_between_slope(double share, double step)
     return (Cubic){-blend, blend, step * rest * (1 - 3 * share), -step * share * (2 - 3 * share)};
 }
 
-int tangent_parts(const TangentRun *run)
+int tangent_parts(const TangentRun *run, bool dual)
 {
-    return tangent_dual(run) ? run->scene->ratio : 1;
+    return dual ? run->scene->ratio : 1;
 }
 
 /* Both ends of a step of both. */
@@ -235,11 +235,10 @@ static int change_parts(TangentRun *run, const Ends *ends, double share, const d
 }
 
 /* From the copy, which is right after the change, on: the rest of the step. */
-static int finish(TangentRun *run, const Ends *ends)
+static int finish(TangentRun *run, const Ends *ends, int parts)
 {
     gic_head *head = &run->both->head;
     const gic_head kept = *head;
-    const int parts = tangent_parts(run);
     int status = GIC_OK;
     memcpy(gears_of(run, run->self), gears_of(run, run->copy), 2 * sizeof(int32_t));
     tangent_put(run, tape_array(run->copy, run->code->state_offset), 0,
@@ -282,7 +281,7 @@ static int go_before(const TangentRun *run, const Ends *ends, double share)
     return status;
 }
 
-int tangent_shift(TangentRun *run, double start, TrailStep *step)
+int tangent_shift(TangentRun *run, double start, bool dual, TrailStep *step)
 {
     const int all = run->descriptor.slow_count + run->descriptor.fast_count, choices = run->linear->choices;
     const double now = gic_time(run->both);
@@ -325,7 +324,7 @@ int tangent_shift(TangentRun *run, double start, TrailStep *step)
         tangent_note(run, TRAIL_SHIFT, gic_time(run->self), tape_array(run->self, run->code->state_offset), run->states,
                      bend, run->states + choices + 2);
     }
-    status = finish(run, &ends);
+    status = finish(run, &ends, tangent_parts(run, dual));
     memcpy(to, tangent_array(run, run->descriptor.state_offset), (size_t)all * sizeof *to);
     if (status == GIC_OK && changes_at(run, &ends, 1) == 1) {
         run->shifted = true;

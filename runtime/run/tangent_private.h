@@ -8,6 +8,7 @@
 #include "gic_runtime.h"
 #include "run/tangent_run.h"
 #include "run/trail.h"
+#include "scene/driver.h"
 
 /* The instance of both: a head, then the arrays of the descriptor. */
 typedef struct Both {
@@ -22,6 +23,12 @@ typedef struct Rest {
     double end, length; /* s */
     double *late;       /* [carried] derivatives of the time of the change */
 } Rest;
+
+/* How what a driver keeps changes by a variable. */
+typedef struct DriveSlope {
+    Movement movement[DRIVE_MOVEMENTS];
+    double sum[DRIVE_SUMS];
+} DriveSlope;
 
 struct TangentRun {
     Pool *pool;
@@ -41,6 +48,10 @@ struct TangentRun {
     Rest rest;
     int states, inputs, outputs; /* of the vehicle */
     Trail *trail;                /* NULL: forwards */
+    int64_t steps;               /* of the run, so far */
+    bool *live;                  /* [states] of values of controllers: it changes with something though it may look the
+                                  * same */
+    DriveSlope *drive;           /* [carried] */
 };
 
 /* How the inputs change by a variable at a time: up to three numbers from the input on; returns how many. */
@@ -67,12 +78,30 @@ void tangent_go(const TangentRun *run, const TrailEvent *event);
 double *tangent_age(const TangentRun *run, double *state);
 /* True if fast states take steps of their own. */
 bool tangent_dual(const TangentRun *run);
-/* Parts in which the rest of a step is made after a change of gear. */
-int tangent_parts(const TangentRun *run);
+/* Parts in which the rest of a step is made after a change of gear; dual: it is one of dual rate. */
+int tangent_parts(const TangentRun *run, bool dual);
+/* The vehicle at a time, with the inputs of both. */
+void tangent_inputs_of(const TangentRun *run, double time);
 
 /* tangent_gear.c: after a step that began at `start` (s): if a gear changes within it, go on from there. step: of the
  * trail, or NULL. Returns a status, GIC_ERROR_EVENTS with run->shifted where that has no derivative. */
-int tangent_shift(TangentRun *run, double start, TrailStep *step);
+int tangent_shift(TangentRun *run, double start, bool dual, TrailStep *step);
+
+/* What a rule does at a sample, in the trail. */
+enum { SAMPLE_EFFECT = 1 /* the oldest value on its way takes effect */, SAMPLE_NEW = 2 /* its formula's is taken */ };
+/* tangent_sample.c: what controllers do now. *event: the first of two of the trail, -1: nothing, or no trail; *next: s,
+ * when they do something next. Returns a status. */
+int tangent_sample(TangentRun *run, int *event, double *next);
+
+/* tangent_drive.c: the driver's look, if one is due now; returns the event of the trail or -1. */
+int tangent_drive_look(TangentRun *run);
+/* The inputs that the driver moves: the present movements, and the input of each, -1: it does not move. */
+void tangent_drive(const TangentRun *run, Movement *movement[DRIVE_MOVEMENTS], int input[DRIVE_MOVEMENTS]);
+/* Orders of the input that movement m sets: 1, or 3 where rate and acceleration follow. */
+int tangent_drive_orders(const TangentRun *run, int m);
+/* How the inputs change by variable k as the driver does. */
+void tangent_drive_inputs(const TangentRun *run, int k, double time, double *change);
+
 /* Weights of the ends of a step in the state between them, a cubic, and how they change with the share. */
 typedef struct Cubic {
     double from, to, rate, rate_there;

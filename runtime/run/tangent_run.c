@@ -4,7 +4,8 @@
  * other. Since steps are sums of rates, what comes out is the derivative of the steps themselves, not that of the
  * motion that they approximate.
  *
- * Derivatives are those of the branches that the run takes. Gears that change: tangent_gear.c. */
+ * Derivatives are those of the branches that the run takes. Gears that change: tangent_gear.c; controllers between
+ * steps: tangent_sample.c; drivers: tangent_drive.c. */
 #include "run/tangent_private.h"
 #include "base/message.h"
 #include "engine/engine.h"
@@ -131,8 +132,12 @@ static void add_variables(TangentRun *run, const double *f, const char *const *w
                           .index = i,
                           .value = tape_array(run->self, code->parameter_offset)[i]},
             wanted, count);
+    bool own[code->input_count + 1]; /* which the driver does not move */
+    memset(own, true, sizeof own);
+    if (run->scene->driver)
+        driver_moves(run->scene->driver, own);
     for (int i = 0; i < code->input_count; ++i) {
-        bool is_rate = false;
+        bool is_rate = !own[i];
         for (int k = 0; k < code->coordinate_count; ++k)
             is_rate = is_rate || (code->coordinate_input[k] >= 0 &&
                                   (i == code->coordinate_input[k] + 1 || i == code->coordinate_input[k] + 2));
@@ -178,6 +183,17 @@ void tangent_input_rates(const TangentRun *run, double time, double *rate)
         rate[profile->input + 1] = at[2];
         rate[profile->input + 2] = jerk_of(profile, time);
     }
+    if (!run->scene->driver)
+        return;
+    Movement *movement[DRIVE_MOVEMENTS];
+    int input[DRIVE_MOVEMENTS];
+    tangent_drive(run, movement, input);
+    for (int m = 0; m < DRIVE_MOVEMENTS; ++m) {
+        double at[4];
+        movement_at(movement[m], time, at);
+        if (input[m] >= 0)
+            memcpy(rate + input[m], at + 1, (size_t)tangent_drive_orders(run, m) * sizeof *at);
+    }
 }
 
 /* Inputs at a time, and how they change by each variable. A gic_input_function. */
@@ -189,6 +205,8 @@ static void inputs_of_both(void *user, int32_t lane, double time, double *input)
         const RunVariable *v = &run->variable[k];
         double *change = input + run->inputs * (1 + k), at[3];
         memset(change, 0, (size_t)run->inputs * sizeof *change);
+        if (run->scene->driver)
+            tangent_drive_inputs(run, k, time, change);
         if (v->kind != BY_INPUT)
             continue;
         const int count = tangent_input(v, time, at);
@@ -212,8 +230,7 @@ void tangent_put(const TangentRun *run, const double *own, int k, double *both)
     memcpy(both + slow * (1 + run->carried) + fast * k, own + slow, (size_t)fast * sizeof *own);
 }
 
-/* The vehicle at a time, with the inputs of both. */
-static void take_inputs(const TangentRun *run, double time)
+void tangent_inputs_of(const TangentRun *run, double time)
 {
     gic_head *head = &run->self->head;
     head->start_time = time;
@@ -295,7 +312,7 @@ void tangent_note(const TangentRun *run, TrailKind kind, double time, const doub
     const int inputs = kind == TRAIL_SETTLED ? 0 : run->inputs;
     TrailEvent *event = trail_add(run->trail, firsts + seconds + inputs);
     double *number = event->number;
-    *event = (TrailEvent){.time = time, .number = number, .kind = kind};
+    *event = (TrailEvent){.time = time, .number = number, .between = seconds, .kind = kind};
     tangent_discrete(run, event);
     memcpy(number, first, (size_t)firsts * sizeof *number);
     memcpy(number + firsts, second, (size_t)seconds * sizeof *number);
@@ -307,7 +324,7 @@ static int rate_of_both(void *self, double time, const double *state, double *ra
 {
     const TangentRun *run = ((Both *)self)->run;
     double *own = tape_array(run->self, run->code->state_offset), found[run->states + 1];
-    take_inputs(run, time);
+    tangent_inputs_of(run, time);
     tangent_take(run, state, 0, own);
     tangent_note(run, TRAIL_RATE, time, own, run->states, own, 0);
     int status = run->code->rhs(run->self, time, own, found);
@@ -327,7 +344,7 @@ static int links_of_both(void *self, double time, const double *slow, double *li
     const TangentRun *run = ((Both *)self)->run;
     const gic_model *code = run->code;
     double *own = tape_array(run->self, code->state_offset);
-    take_inputs(run, time);
+    tangent_inputs_of(run, time);
     memcpy(own, slow, (size_t)code->slow_count * sizeof *own);
     tangent_note(run, TRAIL_LINKS, time, own, run->states, own, 0);
     int status = code->link(run->self, time, own, link);
@@ -347,7 +364,7 @@ static int fast_of_both(void *self, double time, const double *link, const doubl
     const Linear *linear = run->linear;
     const size_t links = (size_t)code->link_count * sizeof *link, states = (size_t)code->fast_count * sizeof *fast;
     double *own = tape_array(run->self, code->state_offset) + code->slow_count;
-    take_inputs(run, time);
+    tangent_inputs_of(run, time);
     memcpy(own, fast, states);
     tangent_note(run, TRAIL_FAST, time, fast, code->fast_count, link, code->link_count);
     int status = code->fast(run->self, time, link, fast, rate);
@@ -430,7 +447,7 @@ static void make_both(TangentRun *run)
 /* ---- the run ------------------------------------------------------------------------------------------------ */
 
 /* Refuse what steps alone do not make. */
-static void check_scene(Pool *pool, const Model *model, const Scene *scene)
+static void check_scene(Pool *pool, const Scene *scene)
 {
     const Place at = {scene->source, 0, 0};
     const struct {
@@ -439,11 +456,9 @@ static void check_scene(Pool *pool, const Model *model, const Scene *scene)
     } refused[] = {
         {scene->method >= METHOD_ADAMS, "steps vary", "choose `integrator: rk4` or `ab3` and a `step`"},
         {scene->steady > 0, "fast states take longer steps where they are steady", "leave `steady` out"},
-        {scene->driver, "a driver drives", "give inputs over time"},
         {scene->actions, "conditions change the run", "leave `until` and `when` out"},
         {scene->rest, "the vehicle may sleep", "leave `sleep` out"},
         {scene->locate, "steps end where contacts begin and end", "`locate: false`"},
-        {model->controllers > 0, "controllers hold what they sampled", "leave them out"},
     };
     for (size_t i = 0; i < sizeof refused / sizeof *refused; ++i)
         if (refused[i].is)
@@ -487,10 +502,21 @@ void tangent_fail(const TangentRun *run, int status)
               instance_status(run->pool, run->code, &run->self->head, status));
 }
 
+/* Components of outputs but for those that controllers alone read, which come last. */
+static int own_outputs(const Model *model)
+{
+    int own = 0;
+    for (int i = 0, at = 0; i < model->outputs; ++i) {
+        at += model->output[i].count;
+        own = model->output[i].sampled ? own : at;
+    }
+    return own;
+}
+
 static TangentRun *open(Pool *pool, const Model *model, const Scene *scene, Solve solve, const char *const *wanted,
                         int count, bool backwards)
 {
-    check_scene(pool, model, scene);
+    check_scene(pool, scene);
     TangentRun *run = pool_alloc(pool, sizeof *run);
     const Engine *engine = engine_open(pool, "tape", model, &(EngineOptions){.solve = solve, .quiet = true});
     *run = (TangentRun){.pool = pool,
@@ -502,7 +528,7 @@ static TangentRun *open(Pool *pool, const Model *model, const Scene *scene, Solv
                         .code = engine->code,
                         .self = (Instance *)(void *)instance_new(pool, engine),
                         .copy = (Instance *)(void *)instance_new(pool, engine),
-                        .outputs = model->output_components,
+                        .outputs = own_outputs(model),
                         .states = engine->code->slow_count + engine->code->fast_count,
                         .inputs = engine->code->input_count};
     double f[run->linear->count + 1];
@@ -516,6 +542,8 @@ static TangentRun *open(Pool *pool, const Model *model, const Scene *scene, Solv
     check_names(run, wanted, count);
     run->carried = backwards ? 0 : run->variables;
     run->trail = backwards ? trail_new(pool) : NULL;
+    run->live = pool_alloc(pool, (size_t)run->states + 1);
+    run->drive = pool_alloc(pool, ((size_t)run->carried + 1) * sizeof *run->drive);
     make_both(run);
     return run;
 }
@@ -549,6 +577,9 @@ int tangent_begin(TangentRun *run, const Scene *scene)
     double *input = tangent_array(run, run->descriptor.input_offset);
     run->scene = scene;
     run->shifted = run->rest.going = false;
+    run->steps = 0;
+    memset(run->live, 0, (size_t)run->states);
+    memset(run->drive, 0, (size_t)run->carried * sizeof *run->drive);
     gic_restart(run->both, 0);
     if (run->trail)
         trail_begin(run->trail);
@@ -573,7 +604,7 @@ int tangent_begin(TangentRun *run, const Scene *scene)
 int tangent_look(TangentRun *run, double *value, double *slope)
 {
     const double *state = tangent_array(run, run->descriptor.state_offset);
-    take_inputs(run, gic_time(run->both));
+    tangent_inputs_of(run, gic_time(run->both));
     tangent_take(run, state, 0, tape_array(run->self, run->code->state_offset));
     int status = run->code->outputs(run->self);
     memcpy(value, tape_array(run->self, run->code->output_offset), (size_t)run->outputs * sizeof *value);
@@ -596,27 +627,93 @@ bool tangent_dual(const TangentRun *run)
     return run->scene->method == GIC_AB3 && run->scene->ratio > 1 && run->code->fast_count;
 }
 
-int tangent_step(TangentRun *run)
+/* A step, or a part of one. next: of the trail, what was before it and whether a step of the run begins with it. */
+static int advance(TangentRun *run, double h, int32_t method, bool dual, const TrailStep *next)
 {
     gic_head *head = &run->both->head;
-    const double start = gic_time(head), h = run->scene->step;
-    const int history = head->history;
+    const double start = gic_time(head);
     TrailStep *step = run->trail ? trail_add_step(run->trail) : NULL;
-    if (step)
-        *step = (TrailStep){.start = start, .history = history, .first = trail_events(run->trail)};
+    if (step) {
+        *step = *next;
+        step->start = start;
+        step->length = h;
+        step->dual = dual;
+        step->history = head->history;
+        step->first = trail_events(run->trail);
+    }
     memcpy(run->from, tangent_array(run, run->descriptor.state_offset),
            (size_t)(run->descriptor.slow_count + run->descriptor.fast_count) * sizeof *run->from);
-    int status = tangent_dual(run) ? gic_step_dual(&run->descriptor, run->both, h, run->scene->ratio)
-                                   : gic_step(&run->descriptor, run->both, h, run->scene->method);
+    int status = dual ? gic_step_dual(&run->descriptor, run->both, h, run->scene->ratio)
+                      : gic_step(&run->descriptor, run->both, h, method);
     if (step)
         step->gear = trail_events(run->trail);
     if (status == GIC_OK && run->code->shift)
-        status = tangent_shift(run, start, step);
+        status = tangent_shift(run, start, dual, step);
     if (step)
-        step->knots = trail_events(run->trail);
+        step->knots = step->end = trail_events(run->trail);
+    return status;
+}
+
+/* To a time within a step, as the runtime core goes to samples. */
+static int part_to(TangentRun *run, double time, TrailStep *next)
+{
+    const double length = time - gic_time(run->both),
+                 fast_step = run->scene->step / tangent_parts(run, tangent_dual(run));
+    const int parts = 1 + (int)(0.999 * length / fast_step);
+    int status = GIC_OK;
+    for (int i = 0; i < parts && status == GIC_OK; ++i) {
+        status = advance(run, length / parts, GIC_RK4, false, next);
+        *next = (TrailStep){.number = -1, .look = -1, .sample = -1};
+    }
+    gic_restart(run->both, time);
+    inputs_of_both(run, 0, time, tangent_array(run, run->descriptor.input_offset));
+    return status;
+}
+
+/* True if what comes at `at` is before the end, but for rounding. */
+static bool is_before(const TangentRun *run, double at, double end)
+{
+    double same = 0;
+    for (int c = 0; c < run->code->controller_count; ++c)
+        same = fmax(same, GIC_LIMIT_ROUNDING * run->code->controller[c].period);
+    return at + same + 1e-15 * fabs(at) < end;
+}
+
+int tangent_step(TangentRun *run)
+{
+    gic_head *head = &run->both->head;
+    const double h = run->scene->step;
+    const bool dual = tangent_dual(run), goes_on = head->step == h && head->steps > 0;
+    const double first = goes_on ? head->start_time : gic_time(head);
+    const int64_t steps = (goes_on ? head->steps : 0) + 1;
+    const double start = gic_time(head), end = first + (double)steps * h;
+    const int history = head->history;
+    const bool samples = run->code->controller_count > 0;
+    TrailStep next = {.number = run->steps++, .look = tangent_drive_look(run), .sample = -1};
+    double at = INFINITY;
+    int status = samples ? tangent_sample(run, &next.sample, &at) : GIC_OK, count = 0;
+    head->parted = 0;
+    while (status == GIC_OK && is_before(run, at, end)) {
+        head->parted = 1;
+        status = count++ < GIC_SAMPLES ? part_to(run, at, &next) : GIC_ERROR_EVENTS;
+        if (status == GIC_OK)
+            status = tangent_sample(run, &next.sample, &at);
+    }
+    if (status != GIC_OK)
+        return status;
+    if (!head->parted) {
+        status = advance(run, h, run->scene->method, dual, &next);
+    } else {
+        status = part_to(run, end, &next);
+        head->start_time = first;
+        head->steps = steps;
+        head->step = h;
+        head->method = run->scene->method;
+        head->ratio = tangent_parts(run, dual);
+    }
     if (status == GIC_OK)
         status = knots_cross(&run->descriptor, run->scene, head, start, history);
-    if (step)
-        step->end = trail_events(run->trail);
+    if (run->trail)
+        trail_last(run->trail)->end = trail_events(run->trail);
     return status;
 }

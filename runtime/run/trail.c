@@ -75,6 +75,11 @@ int64_t trail_steps(const Trail *trail)
     return trail->steps;
 }
 
+TrailStep *trail_last(const Trail *trail)
+{
+    return &trail->step[trail->steps - 1];
+}
+
 const TrailStep *trail_step(const Trail *trail, int64_t i)
 {
     return &trail->step[i];

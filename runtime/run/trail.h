@@ -15,21 +15,28 @@ typedef enum TrailKind {
     TRAIL_LINKS,   /* state, inputs */
     TRAIL_FAST,    /* fast states, links, inputs */
     TRAIL_SETTLED, /* Euler parameters */
+    TRAIL_SAMPLE,  /* samples of controllers (tangent_sample.c): state that they see, what each rule does, inputs */
+    TRAIL_DRIVE,   /* a look of the driver (tangent_drive.c): state, its derivatives, movements before it */
     TRAIL_SHIFT,   /* a change of gear (tangent_gear.h): state and inputs there, how the state moves on, guard */
 } TrailKind;
 
 typedef struct TrailEvent {
     double time, *number;
+    int between;       /* numbers between state and inputs */
     int32_t dependent; /* Euler parameter: before a right-hand side, after settling */
     int32_t gear[2];   /* before a right-hand side: the present and the previous one */
     TrailKind kind;
 } TrailEvent;
 
-/* A step: which events are its own, then those of a change of gear, if one changes, and those of knots. */
+/* A step, or a part of one: which events are its own, then those of a change of gear, if one changes, and those of
+ * knots. */
 typedef struct TrailStep {
-    double start;    /* s */
-    int32_t history; /* past rates with which it began */
-    double share;    /* of the step, where a gear changes */
+    double start, length; /* s */
+    bool dual;            /* fast states took steps of their own */
+    int64_t number;       /* of the step of the run that begins here; -1: none, for it is a later part of one */
+    int look, sample;     /* event before it: of the driver; the first of two of controllers; -1: none */
+    int32_t history;      /* past rates with which it began */
+    double share;         /* of the step, where a gear changes */
     int first, gear, knots, end;
 } TrailStep;
 
@@ -44,6 +51,7 @@ int trail_events(const Trail *trail);
 /* One more step, which stays where it is up to the next one. */
 TrailStep *trail_add_step(Trail *trail);
 int64_t trail_steps(const Trail *trail);
+TrailStep *trail_last(const Trail *trail);
 const TrailStep *trail_step(const Trail *trail, int64_t i);
 const TrailEvent *trail_event(const Trail *trail, int i);
 

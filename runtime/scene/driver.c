@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-static const double coast = 0.2;      /* m/s^2 of deceleration that rolling resistance provides */
+const double driver_coast = 0.2;
 static const double standing = 0.3;   /* m/s; below it a vehicle that is to stand is held ... */
 static const double holding = 0.3;    /* ... with this share of the brake */
 static const double search_back = 2;  /* m before the last nearest point of the path */
@@ -16,8 +16,7 @@ static const double slowest = 1;      /* m/s; below it the curvature of the vehi
 
 /* ---- path -------------------------------------------------------------------------------------------------- */
 
-/* The point at a distance along the path; the path continues straight beyond its ends, a closed one repeats. */
-static void path_point(const Path *path, double along, double out[2])
+void path_point(const Path *path, double along, double out[2], int *piece)
 {
     const double length = path->step * (path->count - 1);
     if (path->closed)
@@ -27,12 +26,14 @@ static void path_point(const Path *path, double along, double out[2])
     const double share = along / path->step - i, *a = path->point[i], *b = path->point[i + 1];
     for (int k = 0; k < 2; ++k)
         out[k] = a[k] + share * (b[k] - a[k]);
+    *piece = i;
 }
 
 static double distance_at(const Path *path, double along, const double at[3])
 {
     double p[2];
-    path_point(path, along, p);
+    int piece;
+    path_point(path, along, p, &piece);
     return hypot(p[0] - at[0], p[1] - at[1]);
 }
 
@@ -68,7 +69,7 @@ static void control_speed(Driver *driver, double time, double speed)
     profile_at(&driver->speed, time, wanted);
     const double error = wanted[0] - speed, demand = wanted[1] + driver->gain * error + driver->speed_sum;
     const double accelerator = limited(demand / driver->full[0], 0, 1);
-    double brake = limited(-(demand + coast) / driver->full[1], 0, 1);
+    double brake = limited(-(demand + driver_coast) / driver->full[1], 0, 1);
     /* no integration while a pedal is at its end */
     if ((accelerator < 1 || error < 0) && (brake < 1 || error > 0))
         driver->speed_sum += driver->integral * error * driver->period;
@@ -87,7 +88,8 @@ static void control_path(Driver *driver, double time, const Sight *sight, double
     driver->along = path_nearest(path, path->closed ? from : fmax(from, 0), to, sight->position);
     driver->seen = true;
     double p[2];
-    path_point(path, driver->along + ahead, p);
+    int piece;
+    path_point(path, driver->along + ahead, p, &piece);
     const double dx = p[0] - sight->position[0], dy = p[1] - sight->position[1];
     const double across = -sin(sight->yaw) * dx + cos(sight->yaw) * dy;
     /* curvature of the circle through that point, tangent to the vehicle's axis */

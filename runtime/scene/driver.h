@@ -47,6 +47,22 @@ typedef struct Driver {
     Movement pedal[2], wheel;
 } Driver;
 
+/* What of a driver follows from what it sees: its movements, and what it sums up. */
+enum { DRIVE_MOVEMENTS = 3 /* accelerator, brake, steering */, DRIVE_SUMS = 2 /* of speed, of curvature */ };
+enum { DRIVE_RESULTS = DRIVE_MOVEMENTS + DRIVE_SUMS, DRIVE_SEEN = 13 /* place and velocities of a free base */ };
+
+/* m/s^2 of deceleration that rolling resistance provides. */
+extern const double driver_coast;
+/* A point of the path at a distance along it, m; it goes on straight beyond its ends, a closed one repeats. *piece: the
+ * point before it. */
+void path_point(const Path *path, double along, double out[2], int *piece);
+/* driver_slope.c: derivatives of where movements go and of the sums after a look, [3 movements, 2 sums], by what it saw
+ * of the state [position, Euler parameters, velocity, angular velocity], and the sums before. before, after: the driver
+ * before and after the look at `time`; state, half: as in sight_of(). At limits those of the branch that it takes; by
+ * the place along the path those of the nearest point itself, which a look finds to 1 um. */
+void driver_look_slope(const Driver *before, const Driver *after, double time, const double *state, int half,
+                       double slope[DRIVE_RESULTS][DRIVE_SEEN + DRIVE_SUMS]);
+
 /* The measurements of a base whose pose and velocities are in a state (models/FORMAT.md section 10); half: from a
  * number of the pose's to its rate. */
 Sight sight_of(const double *state, int half);
