@@ -150,4 +150,40 @@ for name, value in zip(("link_in_y", "link_in_z"), other.x):
     near(f"bump steer: {name}", found[f"parameter/{name}"], value, 1e-6)
 near("bump steer that is left", end, math.sqrt(np.mean(toe(other.x)**2)), 1e-9)
 
+# ---- the rack through a double lane change ---------------------------------------------------------------------------------------
+
+lanes = f"{models}/optimize/lane_change"
+first, least, racks = optimize("aside^2", lanes + ".veh", lanes + ".scene", *(f"input/rack[{k}]=-0.05:0.05" for k in range(1, 8)))
+TEXT = Path(lanes + ".scene").read_text()
+VALUES = "values: [0, -0.02, 0.006, 0.018, 0.006, 0.012, -0.006, -0.016, 0]"
+check("the scene's profile", VALUES in TEXT)
+
+
+def squares(x):
+    """aside^2 at the scene's output times, by a run alone."""
+    path = f"{work}/lanes.scene"
+    Path(path).write_text(TEXT.replace(VALUES, f"values: {[0, *map(float, x), 0]}"))
+    return columns(lanes + ".veh", path, "aside")[:, 0] ** 2
+
+
+def size(x):
+    return math.sqrt(np.mean(squares(x) ** 2))
+
+
+rough = np.array([-0.02, 0.006, 0.018, 0.006, 0.012, -0.006, -0.016])
+best = np.array([racks[f"input/rack[{k}]"] for k in range(1, 8)])
+near("lanes: the start", size(rough), first, 1e-9)
+near("lanes: what was found", size(best), least, 1e-9)
+check(f"lanes: from {first} to {least}", first > 1 and least < 0.005)
+check("lanes: the largest distance", math.sqrt(max(squares(best))) < 0.15)
+# scipy by differences of runs, from half way: it finds nothing that is better by 1 %
+other = least_squares(squares, (rough + best) / 2, bounds=(-0.05, 0.05), x_scale=0.01, diff_step=1e-5, max_nfev=15)
+check(f"lanes: scipy finds {size(other.x)}, --optimize {least}", size(other.x) > 0.99 * least)
+# nor does any value by itself
+for k in range(7):
+    for change in (-1e-4, 1e-4):
+        moved = best.copy()
+        moved[k] += change
+        check(f"lanes: value {k + 1} moved by {change}", size(moved) > least * (1 - 1e-6))
+
 finish()
