@@ -25,7 +25,7 @@ static const char usage[] =
     "       gicgen --batch N MODEL.veh [--scene FILE.scene] [-o FILE.c]\n"
     "                                         write code for N vehicles at once (default: <model>_batch.c), to be\n"
     "                                         compiled beside <model>.c, which is for the same scene or for any\n"
-    "       gicgen --scene FILE.scene MODEL.veh [-o FILE.c]\n"
+    "       gicgen --scene FILE.scene MODEL.veh [--lanes W] [-o FILE.c]\n"
     "                                         write code for that scene alone, with nothing that it doesn't need\n"
     "       gicgen --fmu 2|3 MODEL.veh [--scene FILE.scene] [-o FILE.fmu]\n"
     "                                         write a unit of FMI 2.0 or 3.0 for other simulators (default: "
@@ -200,8 +200,6 @@ static Options read_options(int count, char **word)
         usage_error(options.formed ? "--solve is for code and --report" : "--recovery is for code and --report", NULL);
     if (options.batch.lanes && (!code || fmu))
         usage_error("--lanes is for code", NULL);
-    if (options.batch.lanes && options.scene && options.task != TASK_BATCH)
-        usage_error("--lanes and --scene are not for the same code, but with --batch: leave one out", NULL);
     if (options.derivatives && !fmu && (options.task != TASK_GENERATE || options.batch.lanes || options.scene))
         usage_error("--derivatives is for the code of one vehicle in any scene, without --batch, --lanes and --scene",
                     NULL);

@@ -182,14 +182,21 @@ void write_lane_links(Generation *g, Text *out)
 typedef struct LaneRow {
     const Generation *g;
     const Class *class;
+    int number; /* of the class */
     int index, first, lanes;
 } LaneRow;
 
-/* Subset of a lane; lanes after the last member repeat it. */
+/* Place in the class of the member that has lane `at` of all; lanes after the last one repeat it. */
+static int lane_place(const Plan *plan, int class, int at)
+{
+    const int last = plan->lane_members[class] - 1;
+    return plan->lane_member[class][at < last ? at : last];
+}
+
+/* Subset of a lane. */
 static const Subset *row_subset(const LaneRow *row, int lane)
 {
-    int member = row->first + lane;
-    member = member < row->class->members ? member : row->class->members - 1;
+    const int member = lane_place(row->g->plan, row->number, row->first + lane);
     return &row->g->sequence->subset[row->class->member[member]];
 }
 
@@ -221,7 +228,7 @@ static int known_reading(const LaneRow *row, int known)
 static LaneRow row_of(const Generation *g, int class, int index)
 {
     int lanes = g->plan->class_lanes[class];
-    return (LaneRow){g, &g->sequence->class[class], index, lanes * index, lanes};
+    return (LaneRow){g, &g->sequence->class[class], class, index, lanes * index, lanes};
 }
 
 /* The same for all rows of a class. */
@@ -324,7 +331,7 @@ static void write_row_constants(const Generation *g, Text *out, const Constants 
         for (int i = 0; i < room(k->count); ++i) {
             text_print(out, "        {");
             for (int l = 0; l < lanes; ++l) {
-                int member = r * lanes + l < class->members ? r * lanes + l : class->members - 1;
+                const int member = lane_place(g->plan, g->class, r * lanes + l);
                 double value = k->count ? ex_value(dag, k->e[i], member * each) : 0;
                 text_print(out, "%s%s", l ? ", " : "", emit_number(g->pool, value));
             }
@@ -472,12 +479,15 @@ void write_lane_call(const Generation *g, Text *out, int indent, int subset)
 {
     const Plan *plan = g->plan;
     const int c = g->sequence->subset[subset].class, place = class_place(&g->sequence->class[c], subset);
-    const LaneRow row = row_of(g, c, place / plan->class_lanes[c]);
+    int at = 0;
+    while (at < plan->lane_members[c] && plan->lane_member[c][at] != place)
+        ++at;
+    if (at % plan->class_lanes[c] || at == plan->lane_members[c]) /* not the first of a row; no lane: an image */
+        return;
+    const LaneRow row = row_of(g, c, at / plan->class_lanes[c]);
     const Formula *formula = plan->formula[c];
     const char *model = g->model->name, *class = row.class->name;
-    const int members = row.class->members - row.first, lanes = row.lanes;
-    if (place != row.first)
-        return;
+    const int members = plan->lane_members[c] - row.first, lanes = row.lanes;
     text_print(out, "%*s/* stage %d:", indent, "", g->sequence->subset[subset].stage);
     for (int l = 0; l < lanes && l < members; ++l)
         text_print(out, "%s %s", l ? "," : "", subset_title(g->pool, g->model, row_subset(&row, l)));

@@ -10,10 +10,26 @@
 
 static const Style style_wheels = {.leaves = 6, .lanes = true, .lane_constants = true};
 
+/* Places in the class of the wheels that are computed: the others' numbers are copied from their mirror images. Returns
+ * how many; member [members], NULL: not asked for. */
+static int find_computed(const Generation *g, const WheelClass *class, int *member)
+{
+    int count = 0;
+    for (int i = 0; i < class->members; ++i) {
+        if (narrowing_wheel_image(g->formulation->narrowing, class->member[i]))
+            continue;
+        if (member)
+            member[count] = i;
+        ++count;
+    }
+    return count;
+}
+
 int wheel_lanes(const Generation *g, const WheelClass *class)
 {
+    const int members = find_computed(g, class, NULL);
     int lanes = 1;
-    while (lanes < class->members && 2 * lanes <= g->plan->lanes)
+    while (lanes < members && 2 * lanes <= g->plan->lanes)
         lanes *= 2;
     return lanes;
 }
@@ -79,19 +95,30 @@ typedef struct Expansion {
     Generation *g;
     const WheelClass *class;
     int lanes;
+    int members, *member; /* find_computed */
     Constants constants;
 } Expansion;
+
+static Expansion expansion_of(Generation *g, const WheelClass *class)
+{
+    Expansion x = {.g = g,
+                   .class = class,
+                   .lanes = wheel_lanes(g, class),
+                   .member = pool_alloc(g->pool, (size_t) class->members * sizeof *x.member)};
+    x.members = find_computed(g, class, x.member);
+    return x;
+}
 
 /* The wheel of a lane; lanes after the last wheel repeat the row's first one. */
 static int lane_member(const Expansion *x, int row, int lane)
 {
-    int member = x->lanes * row + lane;
-    return member < x->class->members ? member : x->lanes * row;
+    const int at = x->lanes * row + lane;
+    return x->member[at < x->members ? at : x->lanes * row];
 }
 
 static int wheel_rows(const Expansion *x)
 {
-    return (x->class->members + x->lanes - 1) / x->lanes;
+    return (x->members + x->lanes - 1) / x->lanes;
 }
 
 /* A vector of numbers that stand apart, lane by lane, at `array`0[i], `array`1[i], ... */
@@ -257,7 +284,7 @@ static void write_rows(const Expansion *x, Text *out)
 
 void write_wheel_class_lanes(Generation *g, Text *out, const WheelClass *class)
 {
-    Expansion x = {.g = g, .class = class, .lanes = wheel_lanes(g, class)};
+    Expansion x = expansion_of(g, class);
     Text body = {.pool = g->pool};
     template_expand(g->pool, &body, g->templates, "wheel_lanes.c.in", g->model->name, class->name, &wheel_lanes_points,
                     &x);
@@ -270,12 +297,12 @@ void write_wheel_class_lanes(Generation *g, Text *out, const WheelClass *class)
 void write_wheel_lane_calls(Generation *g, Text *out, int indent, const WheelClass *class)
 {
     const char *name = g->model->name;
-    const Expansion x = {.g = g, .class = class, .lanes = wheel_lanes(g, class)};
+    const Expansion x = expansion_of(g, class);
     for (int r = 0; r < wheel_rows(&x); ++r) {
-        const int rest = class->members - x.lanes * r, count = rest < x.lanes ? rest : x.lanes;
+        const int rest = x.members - x.lanes * r, count = rest < x.lanes ? rest : x.lanes;
         text_print(out, "%*sif (status == GIC_OK) /*", indent, "");
         for (int l = 0; l < count; ++l)
-            text_print(out, "%s %s", l ? "," : "", g->model->wheel[class->member[x.lanes * r + l]].name);
+            text_print(out, "%s %s", l ? "," : "", g->model->wheel[class->member[lane_member(&x, r, l)]].name);
         text_print(out, " */\n");
         line(out, indent + 4,
              "status = %s_wheels_%s(self, %d, %s_k_wheel_%s[%d], %s_at_%s[%d], time, link, fast, torque, rate, grip);",

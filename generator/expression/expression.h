@@ -420,6 +420,11 @@ const Ex *dag_slopes(Dag *dag, const Block *block, const Ex *root, int roots, co
 Block *block_tangent(const Block *block, const Seeds *seeds, bool both,
                      bool (*wanted)(const void *context, Element target));
 
+/* graph.c: the same graph with its inputs named by `rename`, which gives different inputs different names; nodes keep
+ * their numbers. */
+Dag *dag_renamed(Pool *pool, const Dag *from, Element (*rename)(const void *context, Element input),
+                 const void *context);
+
 /* replace.c: what stands for each node [nodes] that the roots need where to[i] stands for from[i]. Without lanes. */
 const Ex *dag_replace(Dag *dag, const Ex *root, int roots, const Ex *from, const Ex *to, int count);
 /* The same operation on other arguments. */

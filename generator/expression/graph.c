@@ -152,6 +152,33 @@ static void table_grow(Dag *dag)
     }
 }
 
+Dag *dag_renamed(Pool *pool, const Dag *from, Element (*rename)(const void *context, Element input),
+                 const void *context)
+{
+    Dag *dag = pool_alloc(pool, sizeof *dag);
+    const size_t nodes = (size_t)from->nodes, row = (size_t)from->samples * sizeof *from->value;
+    *dag = *from;
+    dag->pool = pool;
+    dag->room = from->nodes;
+    dag->node = pool_alloc(pool, (nodes + 1) * sizeof *dag->node);
+    dag->value = pool_alloc(pool, (nodes + 1) * row);
+    memcpy(dag->node, from->node, nodes * sizeof *dag->node);
+    memcpy(dag->value, from->value, nodes * row);
+    for (size_t e = 0; e < nodes; ++e) {
+        Node *node = &dag->node[e];
+        if (node->op != OP_INPUT)
+            continue;
+        const int lanes = node->wide ? node->wide : 1;
+        Element *element = pool_alloc(pool, (size_t)lanes * sizeof *element);
+        for (int l = 0; l < lanes; ++l)
+            element[l] = rename(context, node->element[l]);
+        node->element = element;
+    }
+    dag->mask /= 2; /* doubled again */
+    table_grow(dag);
+    return dag;
+}
+
 /* The node equal to *node with these samples; it is made if it does not exist. */
 static Ex intern(Dag *dag, const Node *node, const double *value)
 {

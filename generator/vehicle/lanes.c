@@ -37,10 +37,20 @@ static bool in_one_stage(const Sequence *sequence, const Class *class)
     return true;
 }
 
+/* Members that a right-hand side solves: neither images of others nor solved at set-up alone. Returns how many. */
+static int find_solved(const Class *class, const Narrowing *narrowing, int *member)
+{
+    int count = 0;
+    for (int i = 0; i < class->members; ++i)
+        if (!narrowing_image(narrowing, class->member[i]) && !narrowing_steady(narrowing, class->member[i]))
+            member[count++] = i;
+    return count;
+}
+
 int class_rows(const Plan *plan, int class)
 {
-    int members = plan->sequence->class[class].members, lanes = plan->class_lanes[class];
-    return lanes ? (members + lanes - 1) / lanes : members;
+    int lanes = plan->class_lanes[class];
+    return lanes ? (plan->lane_members[class] + lanes - 1) / lanes : plan->sequence->class[class].members;
 }
 
 /* Rows begin at multiples of their length, so that no row crosses a cache line: such a row takes twice as long to read,
@@ -50,15 +60,15 @@ static int row_begin(int size, int lanes)
     return lanes ? (size + lanes - 1) / lanes * lanes : size;
 }
 
-/* Set the places of one row of members, or of a single member. */
-static void place_row(Plan *plan, const Class *class, int first, int lanes)
+/* Set the places of one row of `count` members, or of a single member; member: places in the class. */
+static void place_row(Plan *plan, const Class *class, const int *member, int count, int lanes)
 {
-    const Layout *layout = &plan->formula[plan->sequence->subset[class->member[first]].class]->layout;
+    const Layout *layout = &plan->formula[plan->sequence->subset[class->member[*member]].class]->layout;
     plan->start_size = row_begin(plan->start_size, lanes);
     plan->inertia_size = row_begin(plan->inertia_size, lanes);
     plan->motion_size = row_begin(plan->motion_size, lanes);
-    for (int l = 0; l < (lanes ? lanes : 1) && first + l < class->members; ++l) {
-        int s = class->member[first + l];
+    for (int l = 0; l < count; ++l) {
+        int s = class->member[member[l]];
         const Subset *subset = &plan->sequence->subset[s];
         plan->stride[s] = lanes ? lanes : 1;
         plan->start_offset[s] = plan->start_size + l;
@@ -72,8 +82,24 @@ static void place_row(Plan *plan, const Class *class, int first, int lanes)
     plan->motion_size += layout->bodies * layout->motion_size * lanes;
 }
 
+/* Set the places of a class: rows of those that have a lane, then the others one by one. */
+static void place_class(Plan *plan, int c)
+{
+    const Class *class = &plan->sequence->class[c];
+    const int lanes = plan->class_lanes[c], solved = plan->lane_members[c], *member = plan->lane_member[c];
+    for (int first = 0; first < solved; first += lanes) {
+        const int rest = solved - first;
+        place_row(plan, class, member + first, rest < lanes ? rest : lanes, lanes);
+    }
+    for (int i = 0, next = 0; i < class->members; ++i)
+        if (next < solved && member[next] == i)
+            ++next;
+        else
+            place_row(plan, class, &i, 1, 0);
+}
+
 /* The same plan with its numbers in rows. */
-static Plan *plan_lanes(Pool *pool, const Plan *plan, int most)
+static Plan *plan_lanes(Pool *pool, const Plan *plan, const Narrowing *narrowing, int most)
 {
     const Sequence *sequence = plan->sequence;
     size_t subsets = (size_t)sequence->subsets + 1, bodies = (size_t)plan->model->bodies;
@@ -81,6 +107,8 @@ static Plan *plan_lanes(Pool *pool, const Plan *plan, int most)
     *rows = *plan;
     rows->lanes = most;
     rows->class_lanes = pool_alloc(pool, ((size_t)sequence->classes + 1) * sizeof(int));
+    rows->lane_members = pool_alloc(pool, ((size_t)sequence->classes + 1) * sizeof(int));
+    rows->lane_member = pool_alloc(pool, ((size_t)sequence->classes + 1) * sizeof(int *));
     rows->start_offset = pool_alloc(pool, subsets * sizeof(int));
     rows->inertia_offset = pool_alloc(pool, subsets * sizeof(int));
     rows->motion_offset = pool_alloc(pool, bodies * sizeof(int));
@@ -89,10 +117,13 @@ static Plan *plan_lanes(Pool *pool, const Plan *plan, int most)
     rows->inertia_size = rows->motion_size = 0;
     for (int c = 0; c < sequence->classes; ++c) {
         const Class *class = &sequence->class[c];
-        const int lanes = in_one_stage(sequence, class) ? lanes_for(class->members, most) : 0;
+        int *member = pool_alloc(pool, ((size_t) class->members + 1) * sizeof *member);
+        const int solved = find_solved(class, narrowing, member);
+        const int lanes = in_one_stage(sequence, class) ? lanes_for(solved, most) : 0;
         rows->class_lanes[c] = lanes;
-        for (int first = 0; first < class->members; first += lanes ? lanes : 1)
-            place_row(rows, class, first, lanes);
+        rows->lane_member[c] = member;
+        rows->lane_members[c] = lanes ? solved : 0;
+        place_class(rows, c);
     }
     /* these arrays follow each other in an instance */
     rows->start_size = row_begin(rows->start_size, most);
@@ -257,10 +288,87 @@ static void add_subset(Inputs *all, const Plan *plan, int s)
     }
 }
 
+/* ---- code for one scene --------------------------------------------------------------------------------------------
+ */
+
+/* Where numbers of m[] and n[] stand that stood elsewhere: by their old places. */
+typedef struct Moves {
+    int *motion, *inertia;
+} Moves;
+
+static Moves find_moves(Pool *pool, const Plan *from, const Plan *to)
+{
+    const Sequence *sequence = to->sequence;
+    Moves moves = {pool_alloc(pool, ((size_t)from->motion_size + 1) * sizeof(int)),
+                   pool_alloc(pool, ((size_t)from->inertia_size + 1) * sizeof(int))};
+    for (int s = 0; s < sequence->subsets; ++s) {
+        const Subset *subset = &sequence->subset[s];
+        if (subset->class < 0)
+            continue;
+        const Layout *layout = &to->formula[subset->class]->layout;
+        for (int b = 0; b < subset->bodies; ++b)
+            for (int i = 0; i < layout->motion_size; ++i)
+                moves.motion[from->motion_offset[subset->body[b]] + i] =
+                    to->motion_offset[subset->body[b]] + to->stride[s] * i;
+        for (int i = 0; i < layout->inertia_size; ++i)
+            moves.inertia[from->inertia_offset[s] + i] = to->inertia_offset[s] + to->stride[s] * i;
+    }
+    return moves;
+}
+
+static Element move_input(const void *context, Element input)
+{
+    const Moves *moves = context;
+    if (input.array == ARRAY_m)
+        input.index = moves->motion[input.index];
+    if (input.array == ARRAY_n)
+        input.index = moves->inertia[input.index];
+    return input;
+}
+
+static Block *move_block(Pool *pool, const Moves *moves, const Block *block)
+{
+    Block *moved = pool_alloc(pool, sizeof *moved);
+    if (!block)
+        return NULL;
+    *moved = *block;
+    if (block->dag)
+        moved->dag = dag_renamed(pool, block->dag, move_input, moves);
+    return moved;
+}
+
+/* The blocks as the scene left them, reading numbers from rows. They are not made anew, and the equations of motion are
+ * not packed: so they keep what the scene saves, and every operation, so that results keep their bits. */
+static void move_blocks(Pool *pool, Formulation *f, const Plan *from)
+{
+    const Moves moves = find_moves(pool, from, f->plan);
+    f->dynamics = move_block(pool, &moves, f->dynamics);
+    f->outputs = move_block(pool, &moves, f->outputs);
+    f->contacts = move_block(pool, &moves, f->contacts);
+    f->poses = move_block(pool, &moves, f->poses);
+    f->inverse = move_block(pool, &moves, f->inverse);
+    f->energy = move_block(pool, &moves, f->energy);
+    f->check = move_block(pool, &moves, f->check);
+    f->wrenches = move_block(pool, &moves, f->wrenches);
+    if (!f->wheels)
+        return;
+    Wheels *wheels = pool_alloc(pool, sizeof *wheels);
+    *wheels = *f->wheels;
+    wheels->link = *move_block(pool, &moves, &wheels->link);
+    f->wheels = wheels_merge(pool, wheels);
+}
+
 const Formulation *formulation_lanes(Pool *pool, const Formulation *formulation, int most)
 {
     Formulation *f = pool_alloc(pool, sizeof *f);
-    Plan *plan = plan_lanes(pool, formulation->plan, most);
+    Plan *plan = plan_lanes(pool, formulation->plan, formulation->narrowing, most);
+    if (formulation->narrowing) {
+        *f = *formulation;
+        f->plan = plan;
+        move_blocks(pool, f, formulation->plan);
+        plant_stores(f, "lanes");
+        return f;
+    }
     const Tracks tracks = find_tracks(pool, plan);
     Inputs inputs = {.pool = pool, .tracks = &tracks};
     plan->pack = tracks.lanes;

@@ -40,6 +40,8 @@ typedef struct Plan {
     int *coordinate_track;              /* [coordinates] with `pack`: the index among parts that are alike; -1: none */
     int *class_lanes;                   /* [classes] lanes of classes that are solved side by side; 0: member by member
                                          */
+    int *lane_members, **lane_member;   /* [classes] of these the members that have a lane, as places among the
+                                         * class's; the others are images of some of them in the code for a scene */
     int *start_offset, *inertia_offset; /* [subsets] */
     int *motion_offset;                 /* [bodies] */
     int *stride;                        /* [subsets] distance between consecutive numbers of a subset, in all three

@@ -75,8 +75,8 @@ static Ex merge(Merge *m, Ex a, Ex b)
 
 static Block merge_block(Merge *m, const Block *a, const Block *b)
 {
-    Block out = {.dag = m->dag, .model = a->model};
-    m->failed = m->failed || a->stores != b->stores || a->checks != b->checks;
+    Block out = {.dag = m->dag, .model = a->model, .across = a->across};
+    m->failed = m->failed || a->across != b->across || a->stores != b->stores || a->checks != b->checks;
     for (int i = 0; i < a->checks && !m->failed; ++i) {
         const Check *x = &a->check[i], *y = &b->check[i];
         m->failed = x->magnitude != y->magnitude || x->least != y->least || x->status != y->status;

@@ -86,6 +86,48 @@ check "every false assumption is refused" [ $? -eq 0 ]
     "$work/uneven" >"$work/out"
 check "what is not the same on both sides is refused" [ $? -eq 0 ]
 
+# in lanes the same bits, where elementary functions are libm's: those of gic_lanes.h are made to call them, for the test
+mkdir "$work/libm" && cp "$root"/runtime/*.h "$work/libm" && {
+    cat "$root/runtime/gic_lanes.h"
+    for f in sin cos tan asin acos atan exp log tanh atan2 pow; do
+        x=x
+        case $f in atan2 | pow) x="x, y" ;; esac
+        LANE=$(echo "LANE_$f" | tr '[:lower:]' '[:upper:]')
+        printf '#undef %s\n#define %s(%s) GIC_LANES_NAME(own_%s_, GIC_LANES)(%s)\n' "$LANE" "$LANE" "$x" "$f" "$x"
+    done
+    for f in sin cos tan asin acos atan exp log tanh; do
+        echo "LANE_FUNCTION gic_lane GIC_LANES_NAME(own_${f}_, GIC_LANES)(gic_lane x) { int l; FOR_LANES(l) x[l] = GIC_MATH($f)(x[l]); return x; }"
+    done
+    for f in atan2 pow; do
+        echo "LANE_FUNCTION gic_lane GIC_LANES_NAME(own_${f}_, GIC_LANES)(gic_lane x, gic_lane y) { int l; FOR_LANES(l) x[l] = GIC_MATH($f)(x[l], y[l]); return x; }"
+    done
+} >"$work/libm/gic_lanes.h"
+# lanes MODEL SCENE WIDTH ROWS COMPILER...: so many calls solve subsets, or compute wheels, side by side
+lanes() {
+    model=$1
+    scene=$2
+    width=$3
+    rows=$4
+    shift 4
+    name="$model, $(basename "$scene"), $width lanes, $*"
+    for how in plain lanes; do
+        [ $how = plain ] && more= || more="--lanes $width"
+        # shellcheck disable=SC2086  # words
+        "$gicgen" $more --scene "$scene" "$models/$model.veh" -o "$work/$model.c" &&
+            "$@" -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror -Wno-psabi -ffp-contract=off -DMODEL="${model}_model" \
+                -I"$work/libm" -I"$work" -o "$work/$how" "$root/tests/data/narrow/lanes.c" "$work/$model.c" "$root/runtime/gic_runtime.c" -lm &&
+            "$work/$how" >"$work/$how.bits"
+        check "$name: $how" [ $? -eq 0 ]
+    done
+    check "$name: has lanes" [ "$(grep -c "status = .*ROW_[0-9]*(.*_row_\|status = .*_wheels_.*(self, [0-9]" "$work/$model.c")" -eq "$rows" ]
+    check "$name: the same bits" cmp "$work/plain.bits" "$work/lanes.bits"
+    check "$name: of numbers that move" [ "$(sort -u "$work/lanes.bits" | wc -l)" -gt 500 ]
+}
+lanes hmmwv_vehicle "$root/tests/data/narrow/steer.scene" 4 4 gcc -std=c99 -O0 -DDUAL=6
+lanes hmmwv_vehicle "$root/tests/data/narrow/brake.scene" 2 2 clang -std=c99 -O0 -DDUAL=5 -DROAD
+lanes hmmwv "$models/scenes/paper_run.scene" 4 3 gcc -std=c99 -O0 -DGIC_FLOAT
+lanes hmmwv "$root/tests/data/narrow/bumps.scene" 4 1 gcc -std=c99 -O0 -DROAD
+
 # side NAME SCENE MODEL: is one side computed for both, and if not, why?
 side() { "$gicgen" --scene "$2" "$3" -o - 2>&1 | grep -q "one side for both .* $1"; }
 sed 's/10, 0, 0/10, 0.1, 0/' "$root/tests/data/narrow/bounce.scene" >"$work/drift.scene"
