@@ -14,7 +14,7 @@ static const char help[] =
     "       gicsweep MODEL.veh SCENE --latin COUNT --vary NAME=LOW:HIGH ... [-o results.csv]\n"
     "       gicsweep MODEL.veh SCENE --sobol COUNT --vary NAME=LOW:HIGH ... --metric ...\n"
     "       gicsweep MODEL.veh SCENE --vary ... --slurm FOLDER | --shard I/N -o FOLDER\n"
-    "       gicsweep --merge FOLDER [-o results.csv]\n"
+    "       gicsweep --merge FOLDER [-o results.csv] [--report FILE [--front ...]]\n"
     "\n"
     "Runs a scene with all combinations of values, or with COUNT combinations of a Latin\n"
     "hypercube, several vehicles at once. A row of the results for each run: the varied\n"
@@ -30,7 +30,8 @@ static const char help[] =
     "      --latin COUNT  so many runs: each number takes each of COUNT parts of its range\n"
     "                     once, in random order\n"
     "      --sobol COUNT  sensitivity: runs at COUNT base points, each as many as numbers vary and\n"
-    "                     two more; Sobol' indices of each metric go to standard output\n"
+    "                     two more; Sobol' indices of each metric go to standard output,\n"
+    "                     and into HDF5\n"
     "      --metric 'NAME [UNIT]=FUNCTION(FORMULA)'\n"
     "                     one more column: end, min, max, mean, rms, rms_wk, rms_wd, integral,\n"
     "                     time_of_min, time_of_max, crossing or overshoot of a formula of outputs,\n"
@@ -53,8 +54,8 @@ static const char help[] =
     "      --chunk SECONDS\n"
     "                     what a part takes one processor, as measured; default: 600\n"
     "      --parts N      so many parts instead\n"
-    "      --merge FOLDER one table of all parts, with the bytes of one sweep; says what is\n"
-    "                     missing\n"
+    "      --merge FOLDER one table of all parts, with the bytes of one sweep, and with --report\n"
+    "                     its page; says what is missing\n"
     "      --engine NAME  each run by itself, by an engine of gicrun\n"
     "      --cc COMMAND   C compiler, perhaps with options; default: $CC or cc\n"
     "      --cflags FLAGS more options for it, after ours, in one word\n"
@@ -180,14 +181,19 @@ static void read_command_line(Asked *asked, int count, char **word)
     };
     const int first = options_read("gicsweep", (const char *const[]){help, NULL}, count, word, option,
                                    (int)(sizeof option / sizeof *option), asked, NULL);
-    if (asked->merged && (first < count || sweep->varied || sweep->part || asked->planned || sweep->report))
-        usage_fail("gicsweep", "--merge takes -o alone; all else is in the folder", asked->merged);
+    if (asked->merged && (first < count || sweep->varied || sweep->part || asked->planned))
+        usage_fail("gicsweep", "--merge takes -o, --report and --front; all else is in the folder", asked->merged);
     sweep->quiet = asked->quiet;
     sweep->series = asked->series;
     if (!sweep->results)
         sweep->results = sweep->part ? NULL : asked->planned ? asked->planned : "sweep.csv";
     else if (asked->planned)
         usage_fail("gicsweep", "--slurm names a folder, and -o belongs to --merge, not", sweep->results);
+    if (sweep->fronts && !sweep->report)
+        usage_fail("gicsweep", "--front goes onto a page: --report FILE", NULL);
+    if (sweep->report && (file_is_special(sweep->report) || !strcmp(sweep->report, "-")))
+        usage_fail("gicsweep", "a report goes into a file, not to", sweep->report);
+    sweep->front = asked->front;
     if (asked->merged)
         return;
     if (sweep->part && asked->planned)
@@ -208,14 +214,10 @@ static void read_command_line(Asked *asked, int count, char **word)
         usage_fail("gicsweep", "--latin or --sobol, not both", NULL);
     if (sweep->sobol && !sweep->metrics)
         usage_fail("gicsweep", "--sobol needs metrics: --metric NAME=FUNCTION(FORMULA)", NULL);
-    if (sweep->fronts && !sweep->report)
-        usage_fail("gicsweep", "--front goes onto a page: --report FILE", NULL);
     if (sweep->report && !sweep->metrics)
         usage_fail("gicsweep", "--report needs metrics: --metric NAME=FUNCTION(FORMULA)", NULL);
     if (sweep->report && (sweep->part || asked->planned))
-        usage_fail("gicsweep", "--report is of a sweep that is not in parts:", sweep->report);
-    if (sweep->report && (file_is_special(sweep->report) || !strcmp(sweep->report, "-")))
-        usage_fail("gicsweep", "a report goes into a file, not to", sweep->report);
+        usage_fail("gicsweep", "--report is of all parts: give it to --merge, not here:", sweep->report);
     if (asked->series && !sweep->part && !asked->planned && !path_ends(sweep->results, ".h5") &&
         !path_ends(sweep->results, ".hdf5"))
         usage_fail("gicsweep", "--series needs HDF5: -o FILE.h5, not", sweep->results);
@@ -223,7 +225,6 @@ static void read_command_line(Asked *asked, int count, char **word)
     sweep->scene = word[first + 1];
     sweep->vary = asked->vary;
     sweep->metric = asked->metric;
-    sweep->front = asked->front;
 }
 
 /* The words that make one part, but for --shard and -o. Returns their number. */
@@ -290,7 +291,10 @@ int main(int count, char **word)
         out_of_memory();
     int status = gicl_listen(library, &terminal, said);
     if (status == GICL_OK && asked.merged) {
-        status = gicl_sweep_merge(library, asked.merged, asked.sweep.results, asked.quiet, said);
+        const gicl_sweep *sweep = &asked.sweep;
+        status = sweep->report ? gicl_sweep_merge_report(library, asked.merged, sweep->results, sweep->report,
+                                                         sweep->front, sweep->fronts, asked.quiet, said)
+                               : gicl_sweep_merge(library, asked.merged, sweep->results, asked.quiet, said);
         gicl_messages_free(said);
         gicl_close(library);
         return status;

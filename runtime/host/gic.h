@@ -316,7 +316,7 @@ typedef struct gicl_sweep {
      * GICL_TEXT. 0: none */
     int64_t sobol;
     /* a page with response surfaces of the metrics, and with their fronts min:NAME,max:NAME,...; of all runs, not in
-     * parts. NULL: none */
+     * parts: gicl_sweep_merge_report(). NULL: none */
     const char *report;
     const char *const *front; /* [fronts] */
     int fronts;
@@ -339,6 +339,10 @@ GICL_API int gicl_sweep_plan(gicl_library *library, gicl_handle model, const gic
  * names its part. */
 GICL_API int gicl_sweep_merge(gicl_library *library, const char *folder, const char *results, int quiet,
                               gicl_messages *said);
+
+/* The same with a page as gicl_sweep.report and front: that of a sweep in one call, of one with metrics. */
+GICL_API int gicl_sweep_merge_report(gicl_library *library, const char *folder, const char *results, const char *report,
+                                     const char *const *front, int fronts, int quiet, gicl_messages *said);
 
 /* ---- what gicbench does -------------------------------------------------------------------------------------- */
 

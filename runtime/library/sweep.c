@@ -56,9 +56,7 @@ static void sweep(void *context)
                             .sobol = asked->sobol,
                             .seed = asked->seed,
                             .series = asked->series,
-                            .report = asked->report,
-                            .front = asked->front,
-                            .fronts = asked->fronts,
+                            .page = {asked->report, asked->front, asked->fronts},
                             .part = asked->part,
                             .parts = asked->parts,
                             .quiet = asked->quiet};
@@ -116,7 +114,8 @@ static int check(const gicl_sweep *asked, gicl_messages *said)
     if (asked->fronts < 0 || (asked->fronts && (!asked->front || !asked->report)))
         return call_wrong(said, NULL, "'fronts' is the number of words in 'front', which go onto the page 'report'");
     if (asked->report && (!asked->metrics || asked->parts))
-        return call_wrong(said, NULL, "a report is of metrics, and of a sweep that is not in parts");
+        return call_wrong(said, "of a sweep in parts gicl_sweep_merge_report() writes one",
+                          "a report is of metrics, and of a sweep that is not in parts");
     for (int f = 0; f < asked->fronts; ++f)
         if (!asked->front[f])
             return call_wrong(said, NULL, "number %d of the fronts is NULL", f);
@@ -181,6 +180,7 @@ int gicl_sweep_plan(gicl_library *library, gicl_handle model, const gicl_sweep *
 
 typedef struct Merging {
     const char *folder, *results;
+    ReportRequest page;
     bool quiet;
 } Merging;
 
@@ -188,7 +188,7 @@ static void merge(void *context)
 {
     const Merging *m = context;
     Pool *pool = pool_new();
-    folder_merge(pool, m->folder, m->results, m->quiet);
+    folder_merge(pool, m->folder, m->results, &m->page, m->quiet);
     pool_free(pool);
 }
 
@@ -197,5 +197,19 @@ int gicl_sweep_merge(gicl_library *library, const char *folder, const char *resu
     call_begin(library, said);
     if (!folder || !results)
         return call_wrong(said, NULL, "merging needs a folder and a file for results");
-    return call_work(library, said, merge, &(Merging){folder, results, quiet});
+    return call_work(library, said, merge, &(Merging){folder, results, {NULL, NULL, 0}, quiet});
+}
+
+int gicl_sweep_merge_report(gicl_library *library, const char *folder, const char *results, const char *report,
+                            const char *const *front, int fronts, int quiet, gicl_messages *said)
+{
+    call_begin(library, said);
+    if (!folder || !results || !report)
+        return call_wrong(said, NULL, "merging needs a folder, a file for results and one for the page");
+    if (fronts < 0 || (fronts && !front))
+        return call_wrong(said, NULL, "'fronts' is the number of words in 'front'");
+    for (int f = 0; f < fronts; ++f)
+        if (!front[f])
+            return call_wrong(said, NULL, "number %d of the fronts is NULL", f);
+    return call_work(library, said, merge, &(Merging){folder, results, {report, front, fronts}, quiet});
 }

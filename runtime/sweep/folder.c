@@ -6,6 +6,7 @@
 #include "base/text.h"
 #include "base/version.h"
 #include "host/host.h"
+#include "sweep/report.h"
 #include "sweep/sweep.h"
 
 #include <errno.h>
@@ -202,13 +203,18 @@ static const char *missing_remedy(Pool *pool, const Missing *missing, const char
                       one, parts, folder, which);
 }
 
-void folder_merge(Pool *pool, const char *folder, const char *results, bool quiet)
+void folder_merge(Pool *pool, const char *folder, const char *results, const ReportRequest *page, bool quiet)
 {
     const FolderPlan plan = folder_plan_read(pool, folder);
     Missing missing = {.list = {.pool = pool}};
     int64_t failed = 0;
     if (files_are_one(results, plan_path(pool, folder)))
         diag_fail_call(program_place(), "choose another file", "results do not go to %s", results);
+    SweepReport report = {.path = NULL};
+    if (page->path)
+        report = report_open(pool, page, &plan.form, plan.runs,
+                             (const char *const[]){results, plan_path(pool, folder), NULL});
+    const char **row = pool_alloc(pool, sizeof *row * (size_t)(page->path ? plan.runs + 1 : 1));
     interrupt_hold();
     table_check(pool, results, &plan.form);
     const size_t numbers = (size_t)plan.form.series * (size_t)plan.form.samples;
@@ -227,6 +233,8 @@ void folder_merge(Pool *pool, const char *folder, const char *results, bool quie
             if (journal.series && !series_get(journal.series, first + r, value))
                 diag_fail(program_place(), "try again", "%s changes while it is read", journal.series->path);
             table_row(table, journal.row[r], value);
+            if (page->path)
+                row[first + r] = pool_print(pool, "%s", journal.row[r]);
         }
         if (journal.series)
             series_close(journal.series);
@@ -239,6 +247,8 @@ void folder_merge(Pool *pool, const char *folder, const char *results, bool quie
                   "%lld of %lld runs in %s are missing, in %s %s of %d", (long long)missing.runs, (long long)plan.runs,
                   folder, missing.parts > 1 ? "parts" : "part", missing.list.s, plan.parts);
     }
+    if (page->path)
+        report_write(pool, &plan.form, plan.runs, row, &report, quiet);
     table_close(table);
     interrupt_release();
     if (!quiet)

@@ -13,8 +13,13 @@ static _Noreturn void refuse(const char *why, const char *word)
     diag_fail_call(program_place(), "`gicsweep -h` shows how", "%s '%s'", why, word);
 }
 
-Front front_read(Pool *pool, const char *word, int metrics, const Metric *metric)
+Front front_read(Pool *pool, const char *word, const SweepForm *form)
 {
+    const char **metric = pool_alloc(pool, sizeof *metric * (size_t)(form->columns + 1));
+    int metrics = 0;
+    for (int c = 0; c < form->columns; ++c)
+        if (!strcmp(form->column[c].group, "metrics"))
+            metric[metrics++] = form->column[c].name;
     Front front = {.metric = pool_alloc(pool, sizeof *front.metric * (size_t)(metrics + 1)),
                    .large = pool_alloc(pool, sizeof *front.large * (size_t)(metrics + 1))};
     for (const char *next = word, *end; next; next = *end ? end + 1 : NULL) {
@@ -24,7 +29,7 @@ Front front_read(Pool *pool, const char *word, int metrics, const Metric *metric
             refuse("--front takes min:NAME,max:NAME,... of metrics, not", word);
         const char *name = pool_print(pool, "%.*s", (int)(end - next - 4), next + 4);
         int m = 0;
-        while (m < metrics && strcmp(metric[m].name, name) != 0)
+        while (m < metrics && strcmp(metric[m], name) != 0)
             ++m;
         if (m == metrics)
             refuse("there is no --metric", name);

@@ -17,8 +17,8 @@ typedef struct Front {
     bool *large; /* [numbers] */
 } Front;
 
-/* min:NAME,max:NAME,... of two metrics or more; mistakes end in diag_fail_call(). */
-Front front_read(Pool *pool, const char *word, int metrics, const Metric *metric);
+/* min:NAME,max:NAME,... of two metrics of the form or more; mistakes end in diag_fail_call(). */
+Front front_read(Pool *pool, const char *word, const SweepForm *form);
 /* The runs that no other one beats: none is as small in all numbers and smaller in one. value[runs][numbers]; a run
  * with a number that is not finite is left out; equal runs are on the front together. on[runs]: the front, by the first
  * number, then the next ones, then the run. Returns how many there are. */
@@ -77,8 +77,15 @@ typedef struct SweepReport {
     const Front *front;
 } SweepReport;
 
+/* Look at what is asked for before the runs, or before they are read, so that mistakes are found in seconds: ends in
+ * diag_fail() or diag_fail_call(). others: files that the page is not to be, of which the last one is NULL. */
+SweepReport report_open(Pool *pool, const ReportRequest *request, const SweepForm *form, int64_t runs,
+                        const char *const *others);
 /* Write the page; row[runs] as in Journal. Returns lines about what can't be drawn, or does not fit; "": nothing. */
-const char *sweep_report_page(Pool *pool, const Model *model, const SweepForm *form, int64_t runs,
-                              const char *const *row, const SweepReport *report);
+const char *sweep_report_page(Pool *pool, const SweepForm *form, int64_t runs, const char *const *row,
+                              const SweepReport *report);
+/* The same, and tell these lines. */
+void report_write(Pool *pool, const SweepForm *form, int64_t runs, const char *const *row, const SweepReport *report,
+                  bool quiet);
 
 #endif

@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: MIT
  * The page of a sweep: Pareto fronts, response surfaces and their errors. */
 #include "base/file.h"
+#include "base/message.h"
 #include "base/version.h"
 #include "emit/emit.h"
+#include "host/host.h"
 #include "sweep/report.h"
 
 #include <math.h>
@@ -16,7 +18,7 @@ static const double good = 0.9;
 
 typedef struct Page {
     Pool *pool;
-    const Model *model;
+    const SweepForm *form;
     const SweepReport *report;
     int64_t runs, failed;
     int varied, metrics;
@@ -380,12 +382,22 @@ static void write_surfaces(void *context, Text *out, int indent)
     }
 }
 
+/* NULL: there is no fact of that name. */
+static const char *fact_of(const SweepForm *form, const char *name)
+{
+    for (int f = 0; f < form->facts; ++f)
+        if (!strcmp(form->fact[f].name, name))
+            return form->fact[f].value;
+    return NULL;
+}
+
 static void write_identity(void *context, Text *out, int indent)
 {
     const Page *page = context;
+    const char *description = fact_of(page->form, "description");
     (void)indent;
     text_print(out, "<p>");
-    text_html(out, page->model->description ? page->model->description : page->model->name);
+    text_html(out, description ? description : fact_of(page->form, "model"));
     text_print(out, ". gicgen " GICGEN_VERSION ". %lld runs; %lld failed and are left out.</p>\n",
                (long long)page->runs, (long long)page->failed);
     if (page->runs > POINTS)
@@ -401,14 +413,48 @@ static const Insertion points[] = {
     {"identity", write_identity}, {"fronts", write_fronts}, {"surfaces", write_surfaces}, {NULL, NULL}};
 static const Insertions page_points = {(const char *const[]){"sweep.html.in", NULL}, points, NULL};
 
-const char *sweep_report_page(Pool *pool, const Model *model, const SweepForm *form, int64_t runs,
-                              const char *const *row, const SweepReport *report)
+const char *sweep_report_page(Pool *pool, const SweepForm *form, int64_t runs, const char *const *row,
+                              const SweepReport *report)
 {
-    Page page = {.pool = pool, .model = model, .report = report, .runs = runs, .notes = {.pool = pool}};
+    Page page = {.pool = pool, .form = form, .report = report, .runs = runs, .notes = {.pool = pool}};
     Text out = {.pool = pool};
     read_rows(&page, form, row);
     templates_check(pool, NULL, (const Insertions *const[]){&page_points, NULL});
-    template_expand(pool, &out, NULL, "sweep.html.in", model->name, NULL, &page_points, &page);
+    template_expand(pool, &out, NULL, "sweep.html.in", fact_of(form, "model"), NULL, &page_points, &page);
     file_write(report->path, out.s, out.size);
     return page.notes.s ? page.notes.s : "";
+}
+
+SweepReport report_open(Pool *pool, const ReportRequest *request, const SweepForm *form, int64_t runs,
+                        const char *const *others)
+{
+    Front *front = pool_alloc(pool, sizeof *front * (size_t)(request->fronts + 1));
+    int varied = 0, metrics = 0;
+    for (int c = 0; c < form->columns; ++c) {
+        varied += !strcmp(form->column[c].group, "parameters");
+        metrics += !strcmp(form->column[c].group, "metrics");
+    }
+    if (!metrics)
+        diag_fail_call(program_place(), "make the sweep with --metric NAME=FUNCTION(FORMULA)",
+                       "a report is of metrics, and the sweep has none");
+    if (varied > SURFACE_VARIED_MOST || runs > REPORT_RUNS_MOST)
+        diag_fail_call(program_place(), "leave out --report, or vary less",
+                       "a report has %d runs and %d numbers at most, "
+                       "not %lld and %d",
+                       REPORT_RUNS_MOST, SURFACE_VARIED_MOST, (long long)runs, varied);
+    for (; *others; ++others)
+        if (files_are_one(request->path, *others))
+            diag_fail_call(program_place(), "choose another file", "--report is not to write over %s", *others);
+    file_check(request->path);
+    for (int f = 0; f < request->fronts; ++f)
+        front[f] = front_read(pool, request->front[f], form);
+    return (SweepReport){request->path, request->fronts, front};
+}
+
+void report_write(Pool *pool, const SweepForm *form, int64_t runs, const char *const *row, const SweepReport *report,
+                  bool quiet)
+{
+    const char *notes = sweep_report_page(pool, form, runs, row, report);
+    if (*notes && !quiet)
+        diag_note(pool_print(pool, "%s: note: %s:\n%s", program_place().source->path, report->path, notes));
 }

@@ -49,7 +49,7 @@ static void set_input(Pool *pool, const Model *model, Scene *scene, int input, d
 /* The scene of a run. */
 static Scene vary_scene(Pool *pool, const Sweep *sweep, int64_t run)
 {
-    Scene own = *sweep->scene;
+    Scene own = rest_varies(sweep) ? *sweep->drawn : *sweep->scene;
     own.rest = NULL; /* vehicles in lanes do not sleep */
     if (own.driver) {
         own.driver = pool_alloc(pool, sizeof *own.driver);
@@ -183,6 +183,10 @@ static void start(const Runner *r, Slot *slot)
 {
     BrokenLimit broken;
     if (!limit_broken(r->sweep->model, slot->scene.parameter, &broken)) {
+        if (rest_varies(r->sweep) && !rest_find(slot->pool, r->sweep, &slot->scene, &slot->reason)) {
+            slot->status = GIC_ERROR_INPUT;
+            return;
+        }
         run_set_status(r, slot, begin(r->sweep, slot, r->one), r->one);
         return;
     }

@@ -67,6 +67,13 @@ void run_sample(const Sweep *sweep, Slot *slot, double time, double (*value)(con
 /* From time to time: progress, and r->stopped. */
 void run_look_around(Runner *r);
 
+/* ---- rest.c */
+
+/* Has each run an equilibrium of its own to begin in? */
+bool rest_varies(const Sweep *sweep);
+/* Let a scene, with the numbers of a run, begin in its equilibrium. False: there is none, *why says so. */
+bool rest_find(Pool *pool, const Sweep *sweep, Scene *scene, const char **why);
+
 /* ---- lanes.c */
 
 /* Make runs side by side, a lane each, until the supply ends or someone asks to stop. A run that ends leaves its lane

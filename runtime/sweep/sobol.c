@@ -20,8 +20,11 @@ struct Sobol {
     const SweepForm *form;
     int varied, metrics;
     int64_t row;
-    double *value; /* [metrics][bases][varied + 2] */
+    double *value;      /* [metrics][bases][varied + 2] */
+    SobolIndices found; /* after the last row */
 };
+
+const char *const sobol_name[SOBOL_NUMBERS] = {"first", "first.low", "first.high", "total", "total.low", "total.high"};
 
 static int columns_of(const SweepForm *form, const char *group)
 {
@@ -43,7 +46,8 @@ static const SweepColumn *column_of(const SweepForm *form, const char *group, in
 Sobol *sobol_open(Pool *pool, const SweepForm *form)
 {
     Sobol *s = pool_alloc(pool, sizeof *s);
-    *s = (Sobol){pool, form, columns_of(form, "parameters"), columns_of(form, "metrics"), 0, NULL};
+    *s = (Sobol){
+        .pool = pool, .form = form, .varied = columns_of(form, "parameters"), .metrics = columns_of(form, "metrics")};
     s->value = pool_alloc(pool, sizeof *s->value * (size_t)(s->metrics * form->bases * (s->varied + 2) + 1));
     return s;
 }
@@ -109,11 +113,11 @@ static int64_t keep_finite(int each, int64_t bases, double *value)
     return kept;
 }
 
-static void tell_metric(const Sobol *s, Pool *pool, int metric, Text *out)
+/* number[varied][SOBOL_NUMBERS] of a metric; returns the base points that they come from. */
+static int64_t find_metric(const Sobol *s, Pool *pool, int metric, double *number)
 {
     const int varied = s->varied, each = varied + 2;
     const int64_t bases = s->form->bases;
-    const char *name = csv_quoted(pool, column_of(s->form, "metrics", metric)->name);
     double *value = s->value + metric * bases * each;
     const int64_t count = keep_finite(each, bases, value);
     double first[2][varied], total[2][varied];
@@ -130,27 +134,53 @@ static void tell_metric(const Sobol *s, Pool *pool, int metric, Text *out)
             sample[(2 * i + 1) * RESAMPLED + r] = total[1][i];
         }
     }
-    for (int i = 0; i < varied; ++i) {
-        double number[] = {first[0][i], NAN, NAN, total[0][i], NAN, NAN};
-        if (count >= LEAST) {
-            interval(sample + (2 * i) * RESAMPLED, &number[1], &number[2]);
-            interval(sample + (2 * i + 1) * RESAMPLED, &number[4], &number[5]);
-        }
-        text_print(out, "%s,%s", name, csv_quoted(pool, column_of(s->form, "parameters", i)->name));
-        for (size_t k = 0; k < sizeof number / sizeof *number; ++k)
-            text_print(out, count >= LEAST && isfinite(number[k]) ? ",%.6g" : ",nan", number[k]);
-        text_print(out, ",%lld\n", (long long)count);
+    for (int i = 0; i < varied; ++i, number += SOBOL_NUMBERS) {
+        for (int k = 0; k < SOBOL_NUMBERS; ++k)
+            number[k] = (double)NAN;
+        if (count < LEAST)
+            continue;
+        number[0] = first[0][i];
+        number[3] = total[0][i];
+        interval(sample + (2 * i) * RESAMPLED, &number[1], &number[2]);
+        interval(sample + (2 * i + 1) * RESAMPLED, &number[4], &number[5]);
     }
+    return count;
 }
 
-const char *sobol_text(const Sobol *s)
+const SobolIndices *sobol_indices(Sobol *s)
 {
-    Text out = {.pool = s->pool};
-    text_print(&out, "metric,number,first,first.low,first.high,total,total.low,total.high,points\n");
+    SobolIndices *found = &s->found;
+    if (found->number)
+        return found;
+    *found = (SobolIndices){
+        .metrics = s->metrics,
+        .varied = s->varied,
+        .number = pool_alloc(s->pool, sizeof(double) * (size_t)(s->metrics * s->varied * SOBOL_NUMBERS + 1)),
+        .points = pool_alloc(s->pool, sizeof(double) * (size_t)(s->metrics + 1))};
     for (int m = 0; m < s->metrics; ++m) {
         Pool *pool = pool_new();
-        tell_metric(s, pool, m, &out);
+        found->points[m] = (double)find_metric(s, pool, m, found->number + m * s->varied * SOBOL_NUMBERS);
         pool_free(pool);
     }
+    return found;
+}
+
+const char *sobol_text(Sobol *s)
+{
+    const SobolIndices *found = sobol_indices(s);
+    const double *number = found->number;
+    Text out = {.pool = s->pool};
+    text_print(&out, "metric,number");
+    for (int k = 0; k < SOBOL_NUMBERS; ++k)
+        text_print(&out, ",%s", sobol_name[k]);
+    text_print(&out, ",points\n");
+    for (int m = 0; m < s->metrics; ++m)
+        for (int i = 0; i < s->varied; ++i) {
+            text_print(&out, "%s,%s", csv_quoted(s->pool, column_of(s->form, "metrics", m)->name),
+                       csv_quoted(s->pool, column_of(s->form, "parameters", i)->name));
+            for (int k = 0; k < SOBOL_NUMBERS; ++k, ++number)
+                text_print(&out, isfinite(*number) ? ",%.6g" : ",nan", *number);
+            text_print(&out, ",%lld\n", (long long)found->points[m]);
+        }
     return out.s;
 }

@@ -124,6 +124,8 @@ static void add_facts(Pool *pool, const Sweep *sweep, const EngineOptions *code,
     add_fact(pool, form, "gicgen", GICGEN_VERSION);
     add_fact(pool, form, "program_hash", hash_text(pool, program_hash(pool)));
     add_fact(pool, form, "model", sweep->model->name);
+    if (sweep->model->description)
+        add_fact(pool, form, "description", sweep->model->description);
     add_fact(pool, form, "model_hash", hash_text(pool, source_hash(sweep->model->source)));
     add_fact(pool, form, "scene_hash", hash_text(pool, source_hash(sweep->scene->source)));
     add_fact(pool, form, "engine", sweep->engine->name);
@@ -264,6 +266,8 @@ static void open_sweep(Sweep *sweep, const SweepRequest *request, bool planned, 
     }
     scene_no_rig(sweep->scene);
     scene_no_implicit(sweep->scene, "a sweep");
+    sweep->drawn = sweep->scene;
+    sweep->solve = request->code.solve;
     sweep->scene = equilibrium_start(pool, model, sweep->scene, request->code.solve);
     sweep->engine = open_code(pool, request, model, sweep->scene, &sweep->many);
     table->engine = sweep->engine;
@@ -276,33 +280,14 @@ static void open_sweep(Sweep *sweep, const SweepRequest *request, bool planned, 
         table_check(pool, request->results, sweep->form);
 }
 
-/* What the page shall have, before the runs: mistakes are found in seconds. */
+/* What the page shall have. */
 static SweepReport open_report(const Sweep *sweep, const SweepRequest *request)
 {
-    const SweepPlan *plan = sweep->plan;
-    Front *front = pool_alloc(sweep->pool, sizeof *front * (size_t)(request->fronts + 1));
-    if (plan->varied > SURFACE_VARIED_MOST || plan->runs > REPORT_RUNS_MOST)
-        diag_fail_call(program_place(), "leave out --report, or vary less",
-                       "a report has %d runs and %d numbers at most, "
-                       "not %lld and %d",
-                       REPORT_RUNS_MOST, SURFACE_VARIED_MOST, (long long)plan->runs, plan->varied);
-    if (files_are_one(request->report, request->results) ||
-        files_are_one(request->report, pool_print(sweep->pool, "%s.journal", request->results)))
-        diag_fail_call(program_place(), "choose another file", "--report and -o both write %s", request->report);
-    source_keep(sweep->model->source, request->report);
-    source_keep(sweep->scene->source, request->report);
-    file_check(request->report);
-    for (int f = 0; f < request->fronts; ++f)
-        front[f] = front_read(sweep->pool, request->front[f], sweep->metrics, sweep->metric);
-    return (SweepReport){request->report, request->fronts, front};
-}
-
-static void write_report(const Sweep *sweep, const SweepReport *report)
-{
-    const char *notes =
-        sweep_report_page(sweep->pool, sweep->model, sweep->form, sweep->plan->count, sweep->journal->row, report);
-    if (*notes && !sweep->quiet)
-        diag_note(pool_print(sweep->pool, "%s: note: %s:\n%s", program_place().source->path, report->path, notes));
+    const ReportRequest *page = &request->page;
+    const char *const others[] = {request->results, pool_print(sweep->pool, "%s.journal", request->results), NULL};
+    source_keep(sweep->model->source, page->path);
+    source_keep(sweep->scene->source, page->path);
+    return report_open(sweep->pool, page, sweep->form, sweep->plan->runs, others);
 }
 
 void sweep_all(Pool *pool, const Model *model, const Scene *scene, const SweepRequest *request, SweepTable *table)
@@ -322,7 +307,7 @@ void sweep_all(Pool *pool, const Model *model, const Scene *scene, const SweepRe
                    .quiet = request->quiet,
                    .processes = share_processes()};
     open_sweep(&sweep, request, false, table);
-    const SweepReport report = request->report ? open_report(&sweep, request) : (SweepReport){.path = NULL};
+    const SweepReport report = request->page.path ? open_report(&sweep, request) : (SweepReport){.path = NULL};
     const FolderPlan parts = {sweep_key(pool, sweep.form, &request->code), plan.runs, plan.parts, table->form};
 
     interrupt_hold();
@@ -348,7 +333,7 @@ void sweep_all(Pool *pool, const Model *model, const Scene *scene, const SweepRe
         journal_close(&journal);
     } else {
         if (report.path) /* before the journal goes: the same command makes a page that can't be written */
-            write_report(&sweep, &report);
+            report_write(pool, sweep.form, plan.count, journal.row, &report, request->quiet);
         write_results(&sweep, request->results);
         journal_remove(&journal);
     }

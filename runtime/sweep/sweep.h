@@ -144,9 +144,21 @@ enum { SOBOL_MOST = 20 /* varied numbers: the sequence has 40 */ };
 Sobol *sobol_open(Pool *pool, const SweepForm *form);
 /* The next run's row. */
 void sobol_row(Sobol *sobol, const char *row);
-/* After the last one, once: a table as CSV, with intervals of 95 percent by resampling base points. Points of which a
- * run has no finite number are left out. nan: fewer than 16 are left, or the metric does not vary. */
-const char *sobol_text(const Sobol *sobol);
+
+/* Of each metric and each number that varies: the index of first order, from where to where 95 percent of those lie
+ * that resampled base points give, and the same of the total index. */
+enum { SOBOL_NUMBERS = 6 };
+extern const char *const sobol_name[SOBOL_NUMBERS];
+typedef struct SobolIndices {
+    int metrics, varied;
+    double *number; /* [metrics][varied][SOBOL_NUMBERS] */
+    double *points; /* [metrics] base points whose runs all have a finite number; the others are left out */
+} SobolIndices;
+
+/* After the last row. NAN: fewer than 16 points are left, or the metric does not vary. */
+const SobolIndices *sobol_indices(Sobol *sobol);
+/* As CSV. */
+const char *sobol_text(Sobol *sobol);
 
 /* ---- table.c: results as a file ---------------------------------------------------------------------------- */
 
@@ -246,7 +258,9 @@ void journal_remove(Journal *journal);
 typedef struct Sweep {
     Pool *pool;
     const Model *model;
-    const Scene *scene;
+    const Scene *drawn; /* as the file has it: */
+    const Scene *scene; /* begins in equilibrium, if that is asked for */
+    Solve solve;
     SweepPlan *plan;
     const Engine *engine;
     const gic_batch_model *many; /* NULL: no lanes */
@@ -265,6 +279,13 @@ const char *lanes_unfit(const Scene *scene, const Model *model);
 /* Seconds that one process takes for a run, measured with some that are spread over the sweep. Below 0: someone asked
  * to stop. */
 double sweep_seconds(const Sweep *sweep);
+
+/* A page about the metrics, report.h. */
+typedef struct ReportRequest {
+    const char *path;         /* NULL: none */
+    const char *const *front; /* [fronts] words for front_read() */
+    int fronts;
+} ReportRequest;
 
 /* ---- folder.c: a sweep in parts ----------------------------------------------------------------------------
  *
@@ -287,8 +308,8 @@ FolderPlan folder_plan_read(Pool *pool, const char *folder);
 /* The journal of a part, and its key. */
 const char *folder_journal(Pool *pool, const char *folder, int part);
 const char *folder_key(Pool *pool, const FolderPlan *plan, int part);
-/* Make one table of what the parts made. Fails if a run is missing, and says in which part. */
-void folder_merge(Pool *pool, const char *folder, const char *results, bool quiet);
+/* Make one table of what the parts made, and a page. Fails if a run is missing, and says in which part. */
+void folder_merge(Pool *pool, const char *folder, const char *results, const ReportRequest *page, bool quiet);
 
 /* ---- job.c ------------------------------------------------------------------------------------------------- */
 
@@ -309,10 +330,8 @@ typedef struct SweepRequest {
     int64_t latin;        /* 0: a grid, */
     int64_t sobol;        /* if this is 0, too: base points of Saltelli's runs */
     uint64_t seed;
-    bool series;              /* keep outputs over time; results are HDF5 then */
-    const char *report;       /* a page; NULL: none */
-    const char *const *front; /* [fronts] words for front_read() */
-    int fronts;
+    bool series; /* keep outputs over time; results are HDF5 then */
+    ReportRequest page;
     int part, parts; /* only part 1 to `parts`; 0: all of it, or for sweep_plan() as many as fit */
     bool quiet;
 } SweepRequest;

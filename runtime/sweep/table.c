@@ -201,6 +201,51 @@ static void add_row(Table *table, const char *row, const double *series)
         write_series(table);
 }
 
+/* Names in their order, line by line. */
+static const char *names_of(Pool *pool, const SweepForm *form, const char *group)
+{
+    Text names = {.pool = pool};
+    for (int c = 0; c < form->columns; ++c)
+        if (!strcmp(form->column[c].group, group))
+            text_print(&names, "%s%s", names.size ? "\n" : "", form->column[c].name);
+    return names.s;
+}
+
+/* Sobol' indices: for each kind an array of metrics and numbers. */
+static void write_sobol(const Table *table)
+{
+    static const char *const description[SOBOL_NUMBERS] = {
+        "Sobol' index of first order", "its 2.5th percentile over resampled base points",
+        "its 97.5th percentile",       "total Sobol' index",
+        "its 2.5th percentile",        "its 97.5th percentile"};
+    static const char group[] = "/sobol", points[] = "/sobol/points";
+    const SobolIndices *found = sobol_indices(table->sobol);
+    const Hdf5Plugin *hdf5 = table->hdf5;
+    Pool *pool = table->pool;
+    const int count = found->metrics * found->varied;
+    double *value = pool_alloc(pool, sizeof *value * (size_t)(count + 1));
+    hdf5->group(table->file, group);
+    hdf5->attribute(table->file, group, "metrics", names_of(pool, table->form, "metrics"));
+    hdf5->attribute(table->file, group, "numbers", names_of(pool, table->form, "parameters"));
+    for (int k = 0; k <= SOBOL_NUMBERS; ++k) {
+        const bool last = k == SOBOL_NUMBERS;
+        const char *path = last ? points : pool_print(pool, "%s/%s", group, sobol_name[k]);
+        for (int i = 0; i < count && !last; ++i)
+            value[i] = found->number[i * SOBOL_NUMBERS + k];
+        const int at = hdf5->numbers(table->file, &(Hdf5Numbers){.path = path,
+                                                                 .type = last ? HDF5_INT64 : HDF5_DOUBLE,
+                                                                 .rows = found->metrics,
+                                                                 .columns = last ? 0 : found->varied,
+                                                                 .chunk_rows = found->metrics,
+                                                                 .chunk_columns = found->varied});
+        hdf5->attribute(table->file, path, "description",
+                        last ? "base points whose runs all have a finite number" : description[k]);
+        if (at >= 0)
+            hdf5->write(table->file, at, 0, found->metrics, last ? found->points : value);
+    }
+    look(table);
+}
+
 /* ---- either of them ----------------------------------------------------------------------------------------- */
 
 void table_check(Pool *pool, const char *path, const SweepForm *form)
@@ -244,6 +289,8 @@ void table_row(Table *table, const char *row, const double *series)
 void table_close(Table *table)
 {
     char why[200];
+    if (table->hdf5 && table->sobol)
+        write_sobol(table);
     if (table->hdf5 && table->hdf5->close(table->file, why, sizeof why)) {
         csv_abandon(&table->csv);
         diag_fail(program_place(), "is there room on the disk, and may the folder be written?", "can't write %s: %s",

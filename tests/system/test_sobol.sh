@@ -104,6 +104,47 @@ check "in parts" eval '"$gicsweep" -q --merge "$work/parts" -o "$work/j.csv" >"$
 check "by a script of jobs, as HDF5" eval 'ishigami --sobol 64 --slurm "$work/jobs" --parts 2 && for i in 1 2; do SLURM_ARRAY_TASK_ID=$i sh "$work/jobs/job.sh"; done 2>"$work/said" &&
     "$gicsweep" -q --merge "$work/jobs" -o "$work/j.h5" >"$work/j.txt" && ishigami --sobol 64 -o "$work/k.csv" >"$work/k.txt" && cmp "$work/j.txt" "$work/k.txt"'
 
+# what h5py reads: the same numbers as in the table of text, which has six digits, and to numpy's rounding from the rows in
+# the file; by one process and in parts the same bytes
+cat >"$work/hdf5.py" <<'YYY'
+import csv
+import sys
+import h5py
+import numpy
+f = h5py.File(sys.argv[1], "r")
+sobol, kinds = f["sobol"], ("first", "first.low", "first.high", "total", "total.low", "total.high")
+metrics, numbers = sobol.attrs["metrics"].split("\n"), sobol.attrs["numbers"].split("\n")
+assert sorted(sobol) == sorted((*kinds, "points")) and all(sobol[k].attrs["description"] for k in sobol)
+assert sobol["points"].dtype == numpy.int64 and sobol["points"].shape == (len(metrics),)
+rows = list(csv.DictReader(open(sys.argv[2])))
+assert [(r["metric"], r["number"]) for r in rows] == [(m, n) for m in metrics for n in numbers]
+for r in rows:
+    m, n = metrics.index(r["metric"]), numbers.index(r["number"])
+    for k in kinds:
+        assert sobol[k].shape == (len(metrics), len(numbers)) and "%.6g" % sobol[k][m, n] == r[k], (k, r)
+    assert sobol["points"][m] == int(r["points"])
+seen = 0
+for m, name in enumerate(metrics):
+    each = f["metrics"][name][:].reshape(-1, len(numbers) + 2)
+    both = each[:, :2].ravel()
+    if not numpy.isfinite(each).all() or both.var() == 0:
+        assert numpy.isnan(sobol["first"][m]).all()
+        continue
+    for i in range(len(numbers)):
+        way = each[:, 2 + i] - each[:, 0]
+        first, total = numpy.mean((each[:, 1] - both.mean()) * way) / both.var(), numpy.mean(way**2) / 2 / both.var()
+        assert abs(sobol["first"][m, i] - first) < 1e-12 and abs(sobol["total"][m, i] - total) < 1e-12
+        assert sobol["first.low"][m, i] <= first <= sobol["first.high"][m, i]
+        seen += 1
+assert seen == int(sys.argv[3]), seen
+YYY
+check "in HDF5" eval 'ishigami --sobol 256 -o "$work/i.h5" >"$work/i.txt"'
+check "h5py reads the indices" /usr/bin/python3 "$work/hdf5.py" "$work/i.h5" "$work/i.txt" 3
+for i in 2 1; do ishigami --sobol 256 --shard $i/2 -o "$work/two" >"$work/said"; done
+check "the same file of two parts" eval '"$gicsweep" -q --merge "$work/two" -o "$work/j.h5" >"$work/j.txt" && cmp "$work/i.h5" "$work/j.h5" && cmp "$work/i.txt" "$work/j.txt"'
+check "none without --sobol" eval '"$gicsweep" -q "$work/m.veh" "$work/m.scene" --vary p1=0:1:3 --metric "f=end(p1)" -o "$work/k.h5" 2>"$work/err" &&
+    /usr/bin/python3 -c "import h5py; assert \"sobol\" not in h5py.File(\"$work/k.h5\")"'
+
 one() { echo "(abs(4*p$1 - 2) + $2)/(1 + $2)"; }
 product() {
     sobol --vary p1=0:1 --vary p2=0:1 --vary p3=0:1 --vary p4=0:1 --vary p5=0:1 --vary p6=0:1 \
@@ -123,6 +164,14 @@ assert 0 < good < 256, good
 for r in rows:
     assert int(r['points']) == (good if r['metric'] == 'f' else 0), r
     assert (r['first'] == 'nan') == (r['metric'] == 'none') and (r['total.high'] == 'nan') == (r['metric'] == 'none')"
+
+sobol --sobol 64 --vary p1=-0.2:1 --vary p2=0:1 --metric 'f=end(sqrt(p1) + p2)' --metric 'none/of=crossing(time + 1)' -o "$work/n.h5" >"$work/n.txt"
+check "in HDF5, too" /usr/bin/python3 -c "
+import csv, h5py, numpy
+f = h5py.File('$work/n.h5')['sobol']
+good = int(next(csv.DictReader(open('$work/n.txt')))['points'])
+assert f.attrs['metrics'] == 'f\nnone/of' and list(f['points']) == [good, 0] and 16 < good < 64
+assert numpy.isfinite(f['total.high'][0]).all() and numpy.isnan(f['total'][1]).all()"
 
 # ---- mistakes
 

@@ -227,6 +227,39 @@ cp "$work/r.html" "$work/first.html"
 cp "$work/r.csv" "$work/first.csv"
 check "again, in one process" eval 'OMP_NUM_THREADS=1 sweep $one --front min:a,min:b && cmp "$work/r.html" "$work/first.html" && cmp "$work/r.csv" "$work/first.csv"'
 check "the table without a page" eval '"$gicsweep" -q --engine tape "$work/m.veh" "$work/m.scene" $one -o "$work/plain.csv" && cmp "$work/plain.csv" "$work/first.csv"'
+# of a sweep in parts the same page, of the same bytes
+sed -i 's/^model: mass/&\ndescription: A mass,\n  on \& a <spring>/' "$work/m.veh"
+many="--latin 60 --vary p1=-1:1 --vary p0=-2:5"
+metrics() { "$@" --metric 'f [m]=end(sin(p1)*p0)' --metric 'g=end(exp(p1))'; }
+# shellcheck disable=SC2086  # words
+check "with a description" metrics sweep $many --front max:f,min:g
+check "which stands on it" grep -q 'A mass, on &amp; a &lt;spring&gt;' "$work/r.html"
+for i in 3 1 2; do
+    # shellcheck disable=SC2086  # words
+    metrics "$gicsweep" -q --engine tape "$work/m.veh" "$work/m.scene" $many --shard $i/3 -o "$work/parts"
+done
+check "in parts" "$gicsweep" -q --merge "$work/parts" -o "$work/merged.csv" --report "$work/merged.html" --front max:f,min:g
+check "the same page and table" eval 'cmp "$work/r.html" "$work/merged.html" && cmp "$work/r.csv" "$work/merged.csv"'
+# merge TEXT STATUS OPTION...: ends with the status and this message, and leaves no file
+merge() {
+    text=$1
+    status=$2
+    shift 2
+    rm -f "$work/merged.csv" "$work/merged.html"
+    "$gicsweep" -q --merge "$work/parts" -o "$work/merged.csv" "$@" >"$work/out" 2>"$work/err"
+    [ $? -eq "$status" ] && grep -q -- "$text" "$work/err" && [ ! -e "$work/merged.csv" ] && [ ! -e "$work/merged.html" ]
+}
+check "merged: a front without a page" merge "--front goes onto a page" 2 --front max:f,min:g
+check "merged: no such metric" merge "there is no --metric 'h'" 2 --report "$work/merged.html" --front max:f,min:h
+check "merged: the table's file" merge "--report is not to write over" 2 --report "$work/merged.csv"
+check "merged: a folder that is not there" merge "can't" 1 --report "$work/nowhere/merged.html"
+cp "$work/parts/plan" "$work/kept.plan"
+check "merged: the plan" eval 'merge "--report is not to write over" 2 --report "$work/parts/plan" && cmp "$work/kept.plan" "$work/parts/plan"'
+mv "$work/parts/part_2.journal" "$work/away.journal"
+check "merged: runs are missing" merge "20 of 60 runs in .* are missing" 1 --report "$work/merged.html"
+for i in 1 2; do "$gicsweep" -q --engine tape "$work/m.veh" "$work/m.scene" --vary p1=0:1:4 --shard $i/2 -o "$work/plain"; done
+check "merged: no metrics" eval '"$gicsweep" -q --merge "$work/plain" -o "$work/merged.csv" --report "$work/merged.html" 2>"$work/err"; [ $? -eq 2 ] && grep -q "the sweep has none" "$work/err" && [ ! -e "$work/merged.csv" ]'
+
 check "names are texts" sweep --latin 30 --vary p1=0:1 --metric 'a<b&c [<i>]=end(p1)' --metric 'b=end(p1^2)' --front 'min:a<b&c,min:b'
 check "and no marks" eval '! grep -q "a<b\|<i>" "$work/r.html"'
 
@@ -248,9 +281,9 @@ check "twice the same" refuses "--front has twice the metric 'f'" 2 "$@" --front
 check "no such metric" refuses "there is no --metric 'h'" 2 "$@" --front min:f,max:h
 check "no direction" refuses "--front takes min:NAME,max:NAME,... of metrics, not 'f,g'" 2 "$@" --front f,g
 check "an end too early" refuses "--front takes min:NAME,max:NAME,... of metrics, not 'min:f,'" 2 "$@" --front min:f,
-check "parts" refuses "--report is of a sweep that is not in parts" 2 "$@" --shard 1/2
+check "parts" refuses "--report is of all parts: give it to --merge" 2 "$@" --shard 1/2
 check "standard output" refuses "a report goes into a file" 2 --metric 'f=end(p1)' --report -
-check "over the table" refuses "--report and -o both write" 2 --metric 'f=end(p1)' --report "$work/e.csv"
+check "over the table" refuses "--report is not to write over" 2 --metric 'f=end(p1)' --report "$work/e.csv"
 check "over the model" refuses "m.veh" 1 --metric 'f=end(p1)' --report "$work/m.veh"
 check "no such folder" refuses "none/e.html" 1 --metric 'f=end(p1)' --report "$work/none/e.html"
 check "too many runs" refuses "a report has 100000 runs and 8 numbers at most, not 180000 and 2" 2 "$@" --vary p2=0:1:20000
