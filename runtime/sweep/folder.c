@@ -212,8 +212,8 @@ void folder_merge(Pool *pool, const char *folder, const char *results, const Rep
         diag_fail_call(program_place(), "choose another file", "results do not go to %s", results);
     SweepReport report = {.path = NULL};
     if (page->path)
-        report = report_open(pool, page, &plan.form, plan.runs,
-                             (const char *const[]){results, plan_path(pool, folder), NULL});
+        report = sweep_report_open(pool, page, &plan.form, plan.runs,
+                                   (const char *const[]){results, plan_path(pool, folder), NULL});
     const char **row = pool_alloc(pool, sizeof *row * (size_t)(page->path ? plan.runs + 1 : 1));
     interrupt_hold();
     table_check(pool, results, &plan.form);
@@ -248,7 +248,7 @@ void folder_merge(Pool *pool, const char *folder, const char *results, const Rep
                   folder, missing.parts > 1 ? "parts" : "part", missing.list.s, plan.parts);
     }
     if (page->path)
-        report_write(pool, &plan.form, plan.runs, row, &report, quiet);
+        sweep_report_write(pool, &plan.form, plan.runs, row, &report, quiet);
     table_close(table);
     interrupt_release();
     if (!quiet)

@@ -79,13 +79,13 @@ typedef struct SweepReport {
 
 /* Look at what is asked for before the runs, or before they are read, so that mistakes are found in seconds: ends in
  * diag_fail() or diag_fail_call(). others: files that the page is not to be, of which the last one is NULL. */
-SweepReport report_open(Pool *pool, const ReportRequest *request, const SweepForm *form, int64_t runs,
-                        const char *const *others);
+SweepReport sweep_report_open(Pool *pool, const ReportRequest *request, const SweepForm *form, int64_t runs,
+                              const char *const *others);
 /* Write the page; row[runs] as in Journal. Returns lines about what can't be drawn, or does not fit; "": nothing. */
 const char *sweep_report_page(Pool *pool, const SweepForm *form, int64_t runs, const char *const *row,
                               const SweepReport *report);
 /* The same, and tell these lines. */
-void report_write(Pool *pool, const SweepForm *form, int64_t runs, const char *const *row, const SweepReport *report,
-                  bool quiet);
+void sweep_report_write(Pool *pool, const SweepForm *form, int64_t runs, const char *const *row,
+                        const SweepReport *report, bool quiet);
 
 #endif

@@ -425,8 +425,8 @@ const char *sweep_report_page(Pool *pool, const SweepForm *form, int64_t runs, c
     return page.notes.s ? page.notes.s : "";
 }
 
-SweepReport report_open(Pool *pool, const ReportRequest *request, const SweepForm *form, int64_t runs,
-                        const char *const *others)
+SweepReport sweep_report_open(Pool *pool, const ReportRequest *request, const SweepForm *form, int64_t runs,
+                              const char *const *others)
 {
     Front *front = pool_alloc(pool, sizeof *front * (size_t)(request->fronts + 1));
     int varied = 0, metrics = 0;
@@ -451,8 +451,8 @@ SweepReport report_open(Pool *pool, const ReportRequest *request, const SweepFor
     return (SweepReport){request->path, request->fronts, front};
 }
 
-void report_write(Pool *pool, const SweepForm *form, int64_t runs, const char *const *row, const SweepReport *report,
-                  bool quiet)
+void sweep_report_write(Pool *pool, const SweepForm *form, int64_t runs, const char *const *row,
+                        const SweepReport *report, bool quiet)
 {
     const char *notes = sweep_report_page(pool, form, runs, row, report);
     if (*notes && !quiet)

@@ -287,7 +287,7 @@ static SweepReport open_report(const Sweep *sweep, const SweepRequest *request)
     const char *const others[] = {request->results, pool_print(sweep->pool, "%s.journal", request->results), NULL};
     source_keep(sweep->model->source, page->path);
     source_keep(sweep->scene->source, page->path);
-    return report_open(sweep->pool, page, sweep->form, sweep->plan->runs, others);
+    return sweep_report_open(sweep->pool, page, sweep->form, sweep->plan->runs, others);
 }
 
 void sweep_all(Pool *pool, const Model *model, const Scene *scene, const SweepRequest *request, SweepTable *table)
@@ -333,7 +333,7 @@ void sweep_all(Pool *pool, const Model *model, const Scene *scene, const SweepRe
         journal_close(&journal);
     } else {
         if (report.path) /* before the journal goes: the same command makes a page that can't be written */
-            report_write(pool, sweep.form, plan.count, journal.row, &report, request->quiet);
+            sweep_report_write(pool, sweep.form, plan.count, journal.row, &report, request->quiet);
         write_results(&sweep, request->results);
         journal_remove(&journal);
     }
