@@ -7,6 +7,7 @@
 #include "gic_runtime.h"
 #include "host/host.h"
 #include "model/model.h"
+#include "run/bounce_watch.h"
 #include "run/dead_centre.h"
 #include "run/engines.h"
 #include "run/knot.h"
@@ -51,6 +52,7 @@ typedef struct Run {
     const int *drawn;     /* indices of the picture's signals among the scene's */
     Animation *animation; /* NULL: none */
     StepWatch *watch;     /* NULL: none */
+    BounceWatch *bounces; /* NULL: none */
     SceneEvents *events;  /* NULL: the scene has no conditions */
     LastGood *good;
     Outcome outcome;
@@ -658,6 +660,8 @@ static int advance(Run *run, double end)
             run->most_work = work_of(run->self) - work > run->most_work ? work_of(run->self) - work : run->most_work;
             if (run->watch && status == GIC_OK)
                 step_watch_step(run->watch, run->model, run->self, run->copy);
+            if (run->bounces && status == GIC_OK)
+                bounce_watch_step(run->bounces, run->model, run->self);
             --left;
         }
         run->integrating += clock_seconds(CLOCK_PROCESS_CPUTIME_ID) - before;
@@ -725,6 +729,7 @@ void simulate(Pool *pool, const Engine *engine, const Model *mechanism, const Sc
     const Scene *scene = scene_narrow(pool, whole, mechanism, engine);
     const gic_model *model = engine->code;
     const Place at = {scene->source, 0, 0};
+    StepTheory *theory = step_theory_new(pool, mechanism);
     Run run = {.pool = pool,
                .engine = engine,
                .model = model,
@@ -732,7 +737,7 @@ void simulate(Pool *pool, const Engine *engine, const Model *mechanism, const Sc
                .request = request,
                .animation = animation,
                .watch = scene->page ? NULL /* it would look at steps of the engine */
-                                    : step_watch_new(pool, step_theory_new(pool, mechanism), whole, engine, false)};
+                                    : step_watch_new(pool, theory, whole, engine, false)};
     run.self = instance_new(pool, engine);
     run.copy = instance_new(pool, engine);
     int status = scene_start(engine, scene, run.self);
@@ -745,6 +750,7 @@ void simulate(Pool *pool, const Engine *engine, const Model *mechanism, const Sc
         diag_fail(at, remedy_at_start(status), "the run can't start: %s",
                   instance_status(pool, model, run.copy, status));
     run.good = last_good_new(pool, engine);
+    run.bounces = scene->page ? NULL : bounce_watch_new(pool, theory, whole, engine);
     run.outcome = outcome_new();
     run.events = scene_events_new(pool, engine, scene, run.self, &status);
     if (status != GIC_OK)
@@ -760,6 +766,8 @@ void simulate(Pool *pool, const Engine *engine, const Model *mechanism, const Sc
     const double before = clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
     run.looked = clock_seconds(CLOCK_MONOTONIC);
     const gic_head *failed = run.self;
+    if (run.bounces)
+        bounce_watch_step(run.bounces, model, run.self);
     status = run_all(&run, &failed);
     double last = 0; /* the time of the last good state */
     const char *remedy = NULL,
@@ -782,6 +790,8 @@ void simulate(Pool *pool, const Engine *engine, const Model *mechanism, const Sc
     if (end)
         diag_fail(at, remedy, "the run ends at t = %.6g s: %s", last, end);
     const char *finding = run.watch && !run.interrupted ? step_watch_judge(run.watch, &remedy) : NULL;
+    if (!finding && run.bounces && !run.interrupted)
+        finding = bounce_watch_judge(run.bounces, &remedy);
     if (finding)
         diag_fail(at, remedy, "%s", finding);
 }

@@ -232,24 +232,37 @@ static void open_linear(StepTheory *theory)
     theory->A = numbers(pool, theory->linear->count * theory->linear->count);
 }
 
-/* The equations linearized about a state of a moment. */
-static bool linearize_moment(const StepWatch *watch, const Moment *moment, const double *state)
+/* The equations linearized about a state of a moment, into theory->A. */
+static bool linearize_moment(StepTheory *theory, const Scene *scene, const Engine *engine, const Moment *moment,
+                             const double *state)
 {
-    StepTheory *theory = watch->theory;
     if (!theory->tape)
         open_linear(theory);
     const gic_model *tape = theory->tape->code;
     gic_head *moving = theory->moving;
-    if (theory->tape->standard_count != watch->engine->standard_count ||
-        tape->setup_with(moving, watch->scene->parameter) != GIC_OK)
+    if (theory->tape->standard_count != engine->standard_count || tape->setup_with(moving, scene->parameter) != GIC_OK)
         return false;
-    moving->road = watch->scene->road;
+    moving->road = scene->road;
     memcpy(instance_array(moving, tape->input_offset), moment->input, sizeof(double) * (size_t)tape->input_count);
     for (int i = tape->free_base; i < tape->discrete_count; ++i)
         ((int32_t *)(void *)((char *)moving + tape->discrete_offset))[i] = moment->discrete[i];
     gic_restart(moving, moment->time);
     return engine_enter(theory->tape, moving, state) == GIC_OK &&
            linearize(theory->linear, (Instance *)(void *)moving, theory->f, theory->A) == GIC_OK;
+}
+
+double step_theory_stiffness(StepTheory *theory, const Scene *scene, const Engine *engine, double time,
+                             const double *state, const double *input, const int32_t *discrete)
+{
+    const Moment moment = {.time = time, .input = (double *)input, .discrete = (int32_t *)discrete}; /* only read */
+    if (!linearize_moment(theory, scene, engine, &moment, state))
+        return NAN;
+    const int places = theory->linear->places, count = theory->linear->count;
+    double sum = 0;
+    for (int i = 0; i < places; ++i)
+        for (int j = 0; j < places; ++j)
+            sum -= theory->A[i * count + places + j] * theory->A[(places + j) * count + i];
+    return sum;
 }
 
 /* The part of the step with which a motion just does not grow; with all of it it does. */
@@ -294,8 +307,9 @@ static void judge_mode(const StepWatch *watch, const Mode *mode, Moment *moment)
 
 static void judge_state(StepWatch *watch, Moment *moment, const double *state)
 {
-    const Modes *modes =
-        linearize_moment(watch, moment, state) ? modes_try(watch->pool, watch->theory->linear, watch->theory->A) : NULL;
+    const Modes *modes = linearize_moment(watch->theory, watch->scene, watch->engine, moment, state)
+                             ? modes_try(watch->pool, watch->theory->linear, watch->theory->A)
+                             : NULL;
     for (int k = 0; modes && k < modes->count; ++k)
         judge_mode(watch, &modes->mode[k], moment);
 }

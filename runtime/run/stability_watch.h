@@ -18,6 +18,11 @@ typedef struct StepWatch StepWatch;
 /* What the runs of a model have in common: its equations for small motions, opened when first asked for. The model: for
  * code for any scene, before scene_narrow(). */
 StepTheory *step_theory_new(Pool *pool, const Model *model);
+/* The sum of squares of the angular frequencies, 1/s^2, that springs make at a state of a scene's run by an engine
+ * that integrates the state of FORMAT.md section 10, whatever dampers do: the trace of stiffness over mass, which a
+ * contact of stiffness k with a mass m behind it makes larger by k / m. NAN: not known. */
+double step_theory_stiffness(StepTheory *theory, const Scene *scene, const Engine *engine, double time,
+                             const double *state, const double *input, const int32_t *discrete);
 /* For a run of a scene, also before scene_narrow(), by an engine. NULL: the run is not watched, because its steps
  * vary or are too few. seldom: look at few steps, for runs whose instances are not at hand. */
 StepWatch *step_watch_new(Pool *pool, StepTheory *theory, const Scene *scene, const Engine *engine, bool seldom);
