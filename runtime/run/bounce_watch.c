@@ -47,6 +47,9 @@ static const double explains = 1;       /* angular frequency of an element times
                                          * dampers, 1.25 with strong ones, less where a load ends for other reasons */
 /* Angular frequency times step: below it AB3 bounces lower than it should, and others err by a tenth of its square. */
 static const double resolved = 0.5;
+/* So many times as fast as it came a body goes away only where a method runs away: steps that resolve a contact leave
+ * less until their past has no force of it. As energy in judge_bounce(). */
+static const double runaway = 4;
 static const double rebound_least = 0.01; /* relative to the energy before: less is no bounce */
 
 /* What a state consists of. */
@@ -305,8 +308,8 @@ static bool gives_back_less(BounceWatch *watch)
     return true;
 }
 
-/* The run's body is free again, at `at`, so many steps after the start. */
-static void judge_bounce(BounceWatch *watch, const gic_model *code, const Snapshot *at, int steps)
+/* The run's body is free again, at `at`, so many steps after the start. least_factor: smaller ones say nothing yet. */
+static void judge_bounce(BounceWatch *watch, const gic_model *code, const Snapshot *at, int steps, double least_factor)
 {
     const Bounce *bounce = &watch->bounce;
     if (gives_back_less(watch) || watch->replays > watch->replays_free + watch->work / REPLAYS_SHARE)
@@ -325,6 +328,8 @@ static void judge_bounce(BounceWatch *watch, const gic_model *code, const Snapsh
     if (!(after > 0) || !(low > 0))
         return;
     const double factor = after / low;
+    if (factor < least_factor)
+        return;
     watch->sum[bounce->contact] += log(factor);
     watch->worst[bounce->contact] = fmax(watch->worst[bounce->contact], fabs(log(factor)));
     if (watch->sum[bounce->contact] > log(too_much) && lasts > 0)
@@ -376,6 +381,14 @@ static void begin_bounce(BounceWatch *watch)
     }
 }
 
+/* Has the body gone away too far since it became free? It may come back before it has been free for long. */
+static bool runs_away(const BounceWatch *watch)
+{
+    const Bounce *bounce = &watch->bounce;
+    const double farthest = runaway * bounce->speed * watch->scene->step * (bounce->free + 1);
+    return bounce->free > 0 && bounce->loaded > 0 && -bounce->last[0] > farthest; /* false where no speed is known */
+}
+
 /* One look more at the bounce, which is judged when the body has been free for a while, or just before the next one.
  * before: the look before. */
 static void follow_bounce(BounceWatch *watch, const gic_model *code, const Snapshot *before)
@@ -383,7 +396,7 @@ static void follow_bounce(BounceWatch *watch, const gic_model *code, const Snaps
     Bounce *bounce = &watch->bounce;
     const double now = watch->press[0][bounce->contact];
     if (now > 0 && bounce->free > watch->lag_least) {
-        judge_bounce(watch, code, before, bounce->steps);
+        judge_bounce(watch, code, before, bounce->steps, 0);
         bounce->contact = -1;
         return;
     }
@@ -392,10 +405,10 @@ static void follow_bounce(BounceWatch *watch, const gic_model *code, const Snaps
     bounce->last[0] = now;
     bounce->loaded += now > 0;
     bounce->free = now > 0 ? 0 : bounce->free + 1;
-    const bool ends = bounce->free >= watch->lag + FREE;
-    if (ends)
-        judge_bounce(watch, code, &watch->now, bounce->steps);
-    if (ends || bounce->loaded > LONGEST)
+    const bool away = runs_away(watch), ends = bounce->free >= watch->lag + FREE;
+    if (away || ends)
+        judge_bounce(watch, code, &watch->now, bounce->steps, ends ? 0 : runaway);
+    if (away || ends || bounce->loaded > LONGEST)
         bounce->contact = -1;
 }
 
@@ -462,6 +475,16 @@ void bounce_watch_step(BounceWatch *watch, const gic_model *code, const gic_head
         }
     }
     watch->wait = steps_to_rest(watch);
+}
+
+int64_t bounce_watch_idle(const BounceWatch *watch)
+{
+    return watch->suspects == SUSPECTS ? INT64_MAX : watch->wait > 0 ? watch->wait : 0;
+}
+
+void bounce_watch_pass(BounceWatch *watch, int64_t steps)
+{
+    watch->wait -= steps;
 }
 
 /* ---- after the run ----------------------------------------------------------------------------------------------- */

@@ -18,6 +18,10 @@ BounceWatch *bounce_watch_new(Pool *pool, StepTheory *theory, const Scene *scene
 /* Call before the first step and after each step of an instance, which is only read. code: the engine's, or faster one.
  */
 void bounce_watch_step(BounceWatch *watch, const gic_model *code, const gic_head *self);
+/* Number of steps before the one that bounce_watch_step() looks at next; bounce_watch_pass() stands for calls for so
+ * many of them at most. */
+int64_t bounce_watch_idle(const BounceWatch *watch);
+void bounce_watch_pass(BounceWatch *watch, int64_t steps);
 /* After the run: the contact that gives back too much, when and by how much; *remedy: what to do about it. NULL:
  * nothing was found. */
 const char *bounce_watch_judge(const BounceWatch *watch, const char **remedy);

@@ -220,6 +220,8 @@ static int64_t steps_to_sample(const Runner *r, int64_t most)
         const Slot *slot = &r->slot[i];
         if (slot->run >= 0 && slot->watch && step_watch_idle(slot->watch) < most)
             most = step_watch_idle(slot->watch) + 1;
+        if (slot->run >= 0 && slot->bounces && bounce_watch_idle(slot->bounces) < most)
+            most = bounce_watch_idle(slot->bounces) + 1;
     }
     return most;
 }
@@ -239,14 +241,20 @@ static int64_t step_all(Runner *r, int64_t most)
     }
     for (int i = 0; i < r->slots; ++i) {
         const Slot *slot = &r->slot[i];
-        if (slot->run < 0 || !slot->watch)
+        if (slot->run < 0)
             continue;
-        const bool look = step_watch_idle(slot->watch) < steps;
-        step_watch_pass(slot->watch, steps - look);
-        if (!look)
-            continue;
-        sweep->many->store(r->batch, i, r->one);
-        step_watch_step(slot->watch, sweep->engine->code, r->one, r->copy);
+        const bool look = slot->watch && step_watch_idle(slot->watch) < steps;
+        const bool bounce = slot->bounces && bounce_watch_idle(slot->bounces) < steps;
+        if (slot->watch)
+            step_watch_pass(slot->watch, steps - look);
+        if (slot->bounces)
+            bounce_watch_pass(slot->bounces, steps - bounce);
+        if (look || bounce)
+            sweep->many->store(r->batch, i, r->one);
+        if (look)
+            step_watch_step(slot->watch, sweep->engine->code, r->one, r->copy);
+        if (bounce)
+            bounce_watch_step(slot->bounces, sweep->engine->code, r->one);
     }
     return steps;
 }

@@ -194,12 +194,15 @@ static void start(const Runner *r, Slot *slot)
     slot->reason = pool_print(slot->pool, "with these parameters the model is impossible: %s", broken.text);
 }
 
-/* Judge a watched run: one that is unstable within bounds gets the status of unstable runs. */
+/* Judge a watched run: one that is unstable within bounds, or in which a contact gives back more than it may, gets the
+ * status of unstable runs. */
 static void judge(const Runner *r, Slot *slot)
 {
     const char *remedy;
-    const char *finding =
-        slot->watch && slot->status == GIC_OK && !r->stopped ? step_watch_judge(slot->watch, &remedy) : NULL;
+    const bool good = slot->status == GIC_OK && !r->stopped;
+    const char *finding = slot->watch && good ? step_watch_judge(slot->watch, &remedy) : NULL;
+    if (!finding && slot->bounces && good)
+        finding = bounce_watch_judge(slot->bounces, &remedy);
     if (!finding)
         return;
     slot->status = GIC_ERROR_UNSTABLE;
@@ -258,6 +261,8 @@ static void run_one(Runner *r)
             run_set_status(r, slot, scene_step(sweep->engine, code, scene, variable, r->one, end), r->one);
             if (slot->watch && slot->status == GIC_OK)
                 step_watch_step(slot->watch, code, r->one, r->copy);
+            if (slot->bounces && slot->status == GIC_OK)
+                bounce_watch_step(slot->bounces, code, r->one);
             if (left-- % CHUNK == 0)
                 run_look_around(r);
         }
@@ -280,6 +285,7 @@ bool run_begin(Runner *r, Slot *slot, const Supply *supply)
     slot->run = run;
     slot->scene = vary_scene(slot->pool, sweep, run);
     slot->watch = step_watch_new(slot->pool, r->theory, &slot->scene, sweep->engine, true);
+    slot->bounces = bounce_watch_new(slot->pool, r->theory, &slot->scene, sweep->engine);
     slot->time = 0;
     slot->reason = NULL;
     for (int c = 0; c < sweep->scene->columns; ++c)
@@ -290,6 +296,8 @@ bool run_begin(Runner *r, Slot *slot, const Supply *supply)
     for (int64_t i = 0; slot->series && i < sweep->form->series * sweep->form->samples; ++i)
         slot->series[i] = NAN;
     start(r, slot);
+    if (slot->bounces && slot->status == GIC_OK)
+        bounce_watch_step(slot->bounces, sweep->engine->code, r->one);
     return true;
 }
 

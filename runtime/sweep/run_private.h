@@ -6,6 +6,7 @@
 
 #include "gic_runtime.h"
 #include "run/last_good.h"
+#include "run/bounce_watch.h"
 #include "run/stability_watch.h"
 #include "scene/scene.h"
 #include "sweep/sweep.h"
@@ -23,13 +24,14 @@ typedef struct Slot {
     int64_t run; /* -1: none */
     Scene scene; /* its own; `user` of the instance */
     int status;
-    const char *reason;  /* why it failed */
-    double time;         /* of its last values */
-    Range *range;        /* [columns] */
-    MetricState *metric; /* [metrics] */
-    int64_t sample;      /* output times so far, */
-    double *series;      /* and values at them, [series][samples]; NULL: not asked for */
-    StepWatch *watch;    /* NULL: not watched */
+    const char *reason;   /* why it failed */
+    double time;          /* of its last values */
+    Range *range;         /* [columns] */
+    MetricState *metric;  /* [metrics] */
+    int64_t sample;       /* output times so far, */
+    double *series;       /* and values at them, [series][samples]; NULL: not asked for */
+    StepWatch *watch;     /* NULL: not watched */
+    BounceWatch *bounces; /* the same */
     /* in lanes */
     gic_head *before; /* its vehicle at the last output time, if there was one, */
     Driver *driver;   /* and its driver; NULL: no driver */

@@ -1,7 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# test_bounce_watch.sh GICRUN: runs whose bodies bounce higher than their stops let them are reported, others are not.
+# test_bounce_watch.sh GICRUN GICSWEEP: runs whose bodies bounce higher than their stops let them are reported, others are not.
 gicrun=$(realpath "$1")
+gicsweep=$(realpath "$2")
 root=$(cd "$(dirname "$0")/../.." && pwd)
 # shellcheck source=tests/lib/checking.sh
 . "$root/tests/lib/checking.sh"
@@ -33,6 +34,42 @@ for method in ab3 rk4; do
     grep -v '^ratio' "$root/models/scenes/tires_rough.scene" >rough.scene
     run -q --integrator "$method" "$root/models/hmmwv_tires.veh" rough.scene -o rough.csv
     check "a rough road is no stop: $method" sh -c "! grep -q 'gives back' err"
+done
+
+# between two undamped stops a body keeps its 1 m/s; thrown back hundreds of times as fast it is never free for long
+cat >between.veh <<END
+gicgen: 1
+model: between
+base: ground
+gravity: [0, 0, 0]
+bodies:
+  m: {mass: 1, com: [0, 0, 0], inertia: [1, 1, 1]}
+joints:
+  p: {type: prismatic, bodies: [ground, m], axis: [1, 0, 0]}
+coordinates:
+  x: {type: translation, bodies: [ground, m], axis: [1, 0, 0], range: [-10, 10]}
+forces:
+  s: {type: stop, coordinate: x, low: -0.2, high: 0.2, stiffness: 1e6}
+outputs:
+  x: {type: coordinate, coordinate: x}
+END
+for method in ab3 ros2 ros3 imex; do
+    printf 'gicscene: 1\nduration: 2\nintegrator: %s\nstep: 0.005\ninitial: {rates: {x: 1}, coordinates: {x: 0.1}}\n' $method >between.scene
+    run -q between.veh between.scene -o between.csv
+    check "between two stops by $method" exits 1
+done
+
+# sweeps: the same verdicts, in lanes and each by itself. Heights from 0.1 m, where a bounce is the same at all heights
+# but for where the steps fall
+for step in 0.01 0.001; do
+    scene $step false 0 | sed '/^initial/d' >sweep.scene
+    for way in "" "--engine tape"; do
+        # shellcheck disable=SC2086  # words
+        "$gicsweep" $way drop.veh sweep.scene --vary z=0.1:0.3:5 -o sweep.csv 2>err
+        [ "$(sed 1d sweep.csv | cut -d, -f3 | sort | uniq -c | tr -s ' ')" = "$([ $step = 0.01 ] && echo ' 5 -14' || echo ' 5 0')" ]
+        verdict $? "a sweep with steps of $step s $way: $(cut -d, -f1-3 sweep.csv | tr '\n' ' ')"
+        [ $step = 0.001 ] || check "which says why $way" says "the low end of stop 'floor' gives back more than it may"
+    done
 done
 
 echo "$passed passed, $failed failed"
