@@ -246,6 +246,45 @@ static void write_links(Generation *g, Text *out, int indent, int s)
     line(out, indent, "dlinks.derived = along->derived + %d;", g->plan->derived_offset[s]);
 }
 
+/* Do a subset's bodies follow its own coordinates alone, relative to the base, as those do that it knows? */
+static bool follows_own(const Generation *g, const Subset *subset)
+{
+    bool own = !g->model->tuning;
+    for (int i = 0; i < subset->knowns; ++i) {
+        const Subset *known = &g->sequence->subset[g->sequence->body_subset[subset->known[i]]];
+        own = own && (known->class < 0 || follows_own(g, known));
+        for (int j = 0; j < known->deps; ++j)
+            own = own && subset_column(subset, known->dep[j], false) >= 0;
+    }
+    return own;
+}
+
+/* still: none of its coordinates changes. Where nothing does that its motion follows, its derivatives are 0. */
+static void write_stillness(const Generation *g, Text *out, int indent, int s)
+{
+    const Subset *subset = &g->sequence->subset[s];
+    const Layout *layout = &g->plan->formula[subset->class]->layout;
+    if (!follows_own(g, subset)) {
+        line(out, indent, "still = along->still;");
+        return;
+    }
+    for (int k = 0; k < 2; ++k) {
+        text_print(out, "%*s%s", indent, "", k ? "idle = still && !turns" : "still = 1");
+        for (int j = 0; j < subset->deps; ++j)
+            text_print(out, " && !(GIC_FABS(dlinks.%s[%d]) > R(0.0))", k ? "rate" : "x", j);
+        text_print(out, ";\n");
+    }
+    line(out, indent, "if (idle) {");
+    const char *motion = body_motion_text(g, subset->body[0]);
+    line(out, indent + 4, "memset(along->motion + %s, 0, %d * sizeof(gic_real));", motion,
+         layout->bodies * layout->motion_size);
+    line(out, indent + 4, "memset(along->inertia + %s, 0, %d * sizeof(gic_real));", subset_inertia_text(g, s),
+         layout->inertia_size);
+    line(out, indent + 4, "memset(along->start + %d, 0, %d * sizeof(gic_real));", g->plan->start_offset[s],
+         layout->start_size);
+    line(out, indent, "} else");
+}
+
 static void write_calls(void *context, Text *out, int indent)
 {
     Generation *g = context;
@@ -257,8 +296,9 @@ static void write_calls(void *context, Text *out, int indent)
         const int offset = g->plan->start_offset[s];
         line(out, indent, "/* stage %d: %s */", subset->stage, subset_title(g->pool, g->model, subset));
         write_links(g, out, indent, s);
-        line(out, indent,
-             "%s_tangent_solve_%s(along->still, %s_k_tangent_%s[%d], &links, &dlinks, start + %d, along->start + %d, "
+        write_stillness(g, out, indent, s);
+        line(out, follows_own(g, subset) ? indent + 4 : indent,
+             "%s_tangent_solve_%s(still, %s_k_tangent_%s[%d], &links, &dlinks, start + %d, along->start + %d, "
              "self->motion + %s, self->inertia + %s, along->motion + %s, along->inertia + %s);",
              g->model->name, class->name, g->model->name, class->name, class_place(class, s), offset, offset,
              body_motion_text(g, subset->body[0]), subset_inertia_text(g, s), body_motion_text(g, subset->body[0]),

@@ -2,6 +2,7 @@
  * Sums added in the order in which their terms become ready, instead of the one in which formulas list them: no term
  * that is late waits for others to be added to it. As many operations as before, or fewer where constants meet. */
 #include "expression/expression.h"
+#include "expression/factorize.h"
 
 #include <string.h>
 
@@ -152,5 +153,6 @@ const Ex *balance_sums(Pool *pool, Dag *dag, const Ex *root, int roots)
         }
         measure(&b);
     }
+    systems_replace(dag, image, nodes);
     return image;
 }

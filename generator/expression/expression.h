@@ -201,6 +201,13 @@ typedef struct DagLabel {
 /* Where a constant comes from: origin.c. */
 typedef struct DagOrigin DagOrigin;
 
+/* A system A x = b that linear_solve() has solved, with the matrix of its factors. */
+typedef struct DagSystem {
+    const struct Factors *factors;
+    Ex *b, *x;   /* [n] */
+    bool *found; /* [n] x is a node that the solution made: no part of A or b depends on it */
+} DagSystem;
+
 /* Every node carries `samples` numeric values: sample s is one admissible configuration of class member
  * s / (samples / members). Constants are folded, sums and products simplified as nodes are made. */
 typedef struct Dag {
@@ -212,10 +219,11 @@ typedef struct Dag {
     Node *node;
     double *value; /* [nodes][samples] */
     Ex *table;     /* hash table */
-    int sections, labels, origins;
+    int sections, labels, origins, systems;
     struct DagSection *section;
     struct DagLabel *label;
     DagOrigin *origin;
+    DagSystem *system;
     const Table *tables; /* what OP_TABLE looks up in, as far as samples go; NULL: they are 0 */
     uint32_t mask;
 } Dag;
@@ -305,6 +313,7 @@ typedef struct Factors {
     int n;
     bool symmetric;
     int constants;
+    const Ex *matrix;             /* [n][n] A, both triangles; NULL: the factors are those of another pose */
     int *row, *column;            /* [n] row and column of the k-th pivot */
     Ex *entry;                    /* [n][n] */
     Ex *pivot;                    /* [n] symmetric: the k-th diagonal element when it is reached */

@@ -314,6 +314,7 @@ Factors *linear_factor(Dag *dag, int n, const Ex *A, const double *unknown_scale
     if (is_singular(dag, n, A, column_scale, usable))
         return NULL;
     Factors *f = factors_new(dag, n, false);
+    f->matrix = pool_grow(dag->pool, (void *)A, count * count * sizeof *A, count * count * sizeof *A);
     Elimination z = {.dag = dag,
                      .n = n,
                      .A = pool_grow(dag->pool, (void *)A, count * count * sizeof *A, count * count * sizeof *A),
@@ -332,10 +333,80 @@ Factors *linear_factor(Dag *dag, int n, const Ex *A, const double *unknown_scale
     return f;
 }
 
+/* For dag_slopes(), which need not differentiate the elimination. */
+static void remember_system(Dag *dag, const Factors *f, const Ex *b, const Ex *x)
+{
+    const size_t size = (size_t)f->n * sizeof *b;
+    DagSystem *system = POOL_PUSH(dag->pool, dag->system, dag->systems);
+    Ex last = 0; /* what was there before */
+    *system = (DagSystem){f, pool_alloc(dag->pool, size), pool_alloc(dag->pool, size),
+                          pool_alloc(dag->pool, (size_t)f->n * sizeof(bool))};
+    memcpy(system->b, b, size);
+    memcpy(system->x, x, size);
+    for (int i = 0; i < f->n * f->n; ++i)
+        last = f->matrix[i] > last ? f->matrix[i] : last;
+    for (int i = 0; i < f->n; ++i)
+        last = b[i] > last ? b[i] : last;
+    for (int i = 0; i < f->n; ++i)
+        system->found[i] = x[i] > last;
+}
+
+/* Numbers of a system, all of them. */
+static void list_system(Pool *pool, const DagSystem *system, Ex **root, int *roots)
+{
+    const Factors *f = system->factors;
+    const struct {
+        const Ex *e;
+        int count;
+    } part[] = {{f->matrix, f->n * f->n}, {f->entry, f->n * f->n}, {f->determinant, f->n}, {f->reciprocal, f->n},
+                {f->row_scale, f->n},     {f->beta, f->n},         {system->b, f->n},      {system->x, f->n}};
+    for (size_t k = 0; k < sizeof part / sizeof *part; ++k)
+        for (int i = 0; i < part[k].count; ++i)
+            *POOL_PUSH(pool, *root, *roots) = part[k].e[i];
+}
+
+static Ex *images(Pool *pool, const Ex *image, const Ex *e, int count)
+{
+    Ex *out = pool_alloc(pool, ((size_t)count + 1) * sizeof *out);
+    for (int i = 0; i < count; ++i)
+        out[i] = image[e[i]];
+    return out;
+}
+
+void systems_replace(Dag *dag, const Ex *image, int nodes)
+{
+    Ex *root = NULL, *from = NULL, *to = NULL;
+    int roots = 0, count = 0, counted = 0;
+    for (int s = 0; s < dag->systems; ++s)
+        list_system(dag->pool, &dag->system[s], &root, &roots);
+    for (int e = 0; e < nodes && roots; ++e)
+        if (image[e] != (Ex)e) {
+            *POOL_PUSH(dag->pool, from, count) = (Ex)e;
+            *POOL_PUSH(dag->pool, to, counted) = image[e];
+        }
+    const Ex *all = roots ? dag_replace(dag, root, roots, from, to, count) : NULL;
+    for (int s = 0; s < dag->systems; ++s) {
+        const DagSystem before = dag->system[s];
+        const int n = before.factors->n;
+        Factors *f = pool_alloc(dag->pool, sizeof *f);
+        *f = *before.factors;
+        f->matrix = images(dag->pool, all, f->matrix, n * n);
+        f->entry = images(dag->pool, all, f->entry, n * n);
+        f->determinant = images(dag->pool, all, f->determinant, n);
+        f->reciprocal = images(dag->pool, all, f->reciprocal, n);
+        f->row_scale = images(dag->pool, all, f->row_scale, n);
+        f->beta = images(dag->pool, all, f->beta, n);
+        dag->system[s].factors = f;
+        dag->system[s].b = images(dag->pool, all, before.b, n);
+        dag->system[s].x = images(dag->pool, all, before.x, n);
+    }
+}
+
 void linear_solve(Dag *dag, const Factors *f, const Ex *b, Ex *x)
 {
     const int n = f->n;
-    Ex y[n];
+    Ex y[n], right[n];
+    memcpy(right, b, sizeof right); /* x may alias b */
     for (int k = 0; k < n; ++k) {
         y[k] = b[f->row[k]];
         for (int j = 0; j < k && j < f->constants && !f->symmetric; ++j)
@@ -352,6 +423,8 @@ void linear_solve(Dag *dag, const Factors *f, const Ex *b, Ex *x)
     }
     for (int k = 0; k < n; ++k)
         x[f->column[k]] = y[k];
+    if (f->matrix && !dag->own)
+        remember_system(dag, f, right, x);
 }
 
 void linear_solve_transposed(Dag *dag, const Factors *f, const Ex *b, Ex *x)

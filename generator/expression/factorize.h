@@ -12,6 +12,10 @@ int factors_block_end(const Factors *f, int first);
 /* y [n], in pivot order, becomes the solution. */
 void factors_solve_symmetric(Dag *dag, const Factors *f, Ex *y);
 
+/* Other nodes stand for those of the systems that are remembered: image [nodes]; a node that is its own image follows
+ * from the images of its arguments. */
+void systems_replace(Dag *dag, const Ex *image, int nodes);
+
 /* factorize_block.c: B [size][size], with nonzero determinant, as a block of pivots from `first` on: its inverse into
  * `entry` (sizes 2 and 3), or a QR factorization (more). row_scale [size]: powers of two that make rows comparable. */
 void factors_add_block(Dag *dag, Factors *f, int first, int size, const Ex *B, const double *row_scale);

@@ -88,6 +88,7 @@ Factors *linear_factor_symmetric(Dag *dag, int n, const Ex *A0, const int *order
     for (int i = 0; i < n; ++i)
         for (int j = 0; j < n; ++j)
             A[n * i + j] = i <= j ? A0[n * i + j] : A0[n * j + i];
+    f->matrix = pool_grow(dag->pool, A, (size_t)(n * n) * sizeof *A, (size_t)(n * n) * sizeof *A);
     bool done[n];
     memset(done, 0, sizeof done);
     for (int k = 0, size; k < n; k += size) {

@@ -2,6 +2,8 @@
  * Forward differentiation: the derivative of every node along one direction, as nodes of the same graph. */
 #include "expression/expression.h"
 
+#include <string.h>
+
 /* `then` where x is positive, else 0. */
 static Ex where_positive(Dag *dag, Ex x, Ex then)
 {
@@ -142,20 +144,115 @@ static const bool *checked(const Dag *dag, const Block *block)
     return positive;
 }
 
+/* ---- systems of equations -------------------------------------------------------------------------------------- */
+
+/* The order in which nodes are differentiated. */
+typedef struct Order {
+    const Dag *dag;
+    int *solved; /* [nodes] the system, by its number, whose solution a node is; -1: of none */
+    Ex *node;    /* [count] */
+    int count;
+    char *state; /* [nodes] 0: not yet looked at, 1: waits for others, 2: in node[] */
+    bool circle; /* a system depends on its own solution */
+} Order;
+
+/* Solutions of systems of several equations. */
+static void find_solutions(Order *o, int nodes)
+{
+    for (int e = 0; e < nodes; ++e)
+        o->solved[e] = -1;
+    for (int s = 0; s < o->dag->systems; ++s) {
+        const DagSystem *system = &o->dag->system[s];
+        for (int i = 0; i < system->factors->n && system->factors->n > 1; ++i)
+            if (system->found[i] && o->solved[system->x[i]] < 0)
+                o->solved[system->x[i]] = s;
+    }
+}
+
+/* After all that its derivative follows. Recursion is as deep as systems depend on each other, and what is between
+ * them. */
+static void put(Order *o, Ex e)
+{
+    const Node *node = &o->dag->node[e];
+    o->circle = o->circle || o->state[e] == 1;
+    if (o->state[e])
+        return;
+    o->state[e] = 1;
+    for (int i = 0; node->level == LEVEL_VARIABLE && i < ex_arity((Op)node->op); ++i)
+        put(o, node->arg[i]);
+    if (node->level == LEVEL_VARIABLE && o->solved[e] >= 0) {
+        const DagSystem *system = &o->dag->system[o->solved[e]];
+        const int n = system->factors->n;
+        for (int i = 0; i < n * n; ++i)
+            put(o, system->factors->matrix[i]);
+        for (int i = 0; i < n; ++i)
+            put(o, system->b[i]);
+    }
+    o->state[e] = 2;
+    o->node[o->count++] = e;
+}
+
+/* Of the nodes that the roots need, those before others first where they may be. */
+static Order order_of(const Dag *dag, const Ex *root, int roots, bool systems)
+{
+    const int nodes = dag->nodes;
+    const bool *needed = dag_needed(dag, root, roots);
+    Order o = {.dag = dag,
+               .solved = pool_alloc(dag->pool, (size_t)nodes * sizeof *o.solved),
+               .node = pool_alloc(dag->pool, (size_t)nodes * sizeof *o.node),
+               .state = pool_alloc(dag->pool, (size_t)nodes)};
+    memset(o.solved, -1, (size_t)nodes * sizeof *o.solved);
+    if (systems)
+        find_solutions(&o, nodes);
+    for (Ex e = 0; e < (Ex)nodes; ++e)
+        if (needed[e])
+            put(&o, e);
+    return o.circle ? order_of(dag, root, roots, false) : o;
+}
+
+/* A dx = db - dA x, with the factors that are there: [n] dx. */
+static const Ex *system_slopes(Dag *dag, const DagSystem *system, const Ex *slope)
+{
+    const int n = system->factors->n;
+    Ex *dx = pool_alloc(dag->pool, (size_t)n * sizeof *dx);
+    for (int i = 0; i < n; ++i) {
+        Ex sum = 0;
+        for (int j = 0; j < n; ++j)
+            sum = ex_add(dag, sum, ex_mul(dag, slope[system->factors->matrix[n * i + j]], system->x[j]));
+        dx[i] = ex_sub(dag, slope[system->b[i]], sum);
+    }
+    linear_solve(dag, system->factors, dx, dx);
+    return dx;
+}
+
+static Ex solution_slope(Dag *dag, const DagSystem *system, Ex e, const Ex *slope, const Ex **dx)
+{
+    int i = 0;
+    if (!*dx)
+        *dx = system_slopes(dag, system, slope);
+    while (system->x[i] != e)
+        ++i;
+    return (*dx)[i];
+}
+
 const Ex *dag_slopes(Dag *dag, const Block *block, const Ex *root, int roots, const Seeds *seeds)
 {
     const int nodes = dag->nodes;
     dag->own = dag->own ? dag->own : nodes;
     Ex *slope = pool_alloc(dag->pool, (size_t)nodes * sizeof *slope);
     bool *given = pool_alloc(dag->pool, (size_t)nodes);
-    const bool *positive = checked(dag, block), *needed = dag_needed(dag, root, roots);
+    const Order order = order_of(dag, root, roots, true);
+    const bool *positive = checked(dag, block);
+    const Ex **dx = pool_alloc(dag->pool, ((size_t)dag->systems + 1) * sizeof *dx);
     for (int i = 0; i < seeds->givens; ++i) {
         slope[seeds->given[i]] = seeds->slope[i];
         given[seeds->given[i]] = true;
     }
-    for (Ex e = 0; e < (Ex)nodes; ++e) {
-        if (!needed[e] || given[e] || dag->node[e].level < LEVEL_VARIABLE)
+    for (int k = 0; k < order.count; ++k) {
+        const Ex e = order.node[k];
+        if (given[e] || dag->node[e].level < LEVEL_VARIABLE)
             continue;
+        const int solved = order.solved[e];
         if (dag->node[e].op == OP_INPUT) {
             Element element = *dag->node[e].element;
             if (seeds->seed != NULL)
@@ -164,6 +261,8 @@ const Ex *dag_slopes(Dag *dag, const Block *block, const Ex *root, int roots, co
                 continue;
             element.slope = true;
             slope[e] = ex_input(dag, element, NULL);
+        } else if (solved >= 0) {
+            slope[e] = solution_slope(dag, &dag->system[solved], e, slope, &dx[solved]);
         } else {
             slope[e] = slope_of(dag, e, slope, positive, seeds->seed, seeds->smooth);
         }

@@ -338,6 +338,7 @@ static Factors *factors_from_memory(Work *w, const Factors *factors, Ex *stored,
     Factors *f = pool_alloc(w->pool, sizeof *f);
     const size_t n = (size_t)w->n;
     *f = *factors;
+    f->matrix = NULL;
     f->entry = pool_alloc(w->pool, n * n * sizeof *f->entry);
     f->reciprocal = pool_alloc(w->pool, n * sizeof *f->reciprocal);
     f->beta = pool_alloc(w->pool, n * sizeof *f->beta);
