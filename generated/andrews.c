@@ -51,7 +51,7 @@
  */
 #include "andrews.h"
 
-#if ANDREWS_H != 0x3245f2af
+#if ANDREWS_H != 0xcf614b8f
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 

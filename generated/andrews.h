@@ -50,7 +50,7 @@
  *   outputs, when asked for                                   98       182       0      1        10
  */
 #ifndef ANDREWS_H
-#define ANDREWS_H 0x3245f2af
+#define ANDREWS_H 0xcf614b8f
 
 #include "gic_runtime.h"
 
@@ -184,7 +184,8 @@ typedef struct andrews {
     gic_real multiplier[ANDREWS_MULTIPLIER_ROOM];    /* of the constraints, where outputs need them */
 } andrews;
 
-/* Bring an instance to the design configuration at time 0, at rest, inputs at their defaults, on a flat road. */
+/* Bring an instance to the design configuration at time 0, at rest, inputs at their defaults, on a flat road. What it
+ * held before is gone, also where this ends in a status: then it must be set up again. */
 int andrews_setup(andrews *self);
 
 /* The same with these values of the tunable parameters (ANDREWS_PARAMETERS numbers) instead of the file's; `parameter`

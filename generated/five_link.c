@@ -80,7 +80,7 @@
  */
 #include "five_link.h"
 
-#if FIVE_LINK_H != 0xc9f98857
+#if FIVE_LINK_H != 0x8a64b7f7
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 

@@ -79,7 +79,7 @@
  * With head.most = N, 4 ratio + 4 or more, no step takes more than N, whatever happens in it (EVENTS.md section 10).
  */
 #ifndef FIVE_LINK_H
-#define FIVE_LINK_H 0xc9f98857
+#define FIVE_LINK_H 0x8a64b7f7
 
 #include "gic_runtime.h"
 
@@ -266,7 +266,8 @@ typedef struct five_link {
     gic_real touch[2 * FIVE_LINK_CONTACTS]; /* how near contacts were at the ends of the last two steps */
 } five_link;
 
-/* Bring an instance to the design configuration at time 0, at rest, inputs at their defaults, on a flat road. */
+/* Bring an instance to the design configuration at time 0, at rest, inputs at their defaults, on a flat road. What it
+ * held before is gone, also where this ends in a status: then it must be set up again. */
 int five_link_setup(five_link *self);
 
 /* The same with these values of the tunable parameters (FIVE_LINK_PARAMETERS numbers) instead of the file's;

@@ -137,7 +137,7 @@
  */
 #include "formula_student.h"
 
-#if FORMULA_STUDENT_H != 0x27f11755
+#if FORMULA_STUDENT_H != 0x0bfb6b41
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 

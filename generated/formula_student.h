@@ -136,7 +136,7 @@
  * With head.most = N, 4 ratio + 4 or more, no step takes more than N, whatever happens in it (EVENTS.md section 10).
  */
 #ifndef FORMULA_STUDENT_H
-#define FORMULA_STUDENT_H 0x27f11755
+#define FORMULA_STUDENT_H 0x0bfb6b41
 
 #include "gic_runtime.h"
 
@@ -401,7 +401,8 @@ typedef struct formula_student {
     gic_real touch[2 * FORMULA_STUDENT_CONTACTS]; /* how near contacts were at the ends of the last two steps */
 } formula_student;
 
-/* Bring an instance to the design configuration at time 0, at rest, inputs at their defaults, on a flat road. */
+/* Bring an instance to the design configuration at time 0, at rest, inputs at their defaults, on a flat road. What it
+ * held before is gone, also where this ends in a status: then it must be set up again. */
 int formula_student_setup(formula_student *self);
 
 /* The same with these values of the tunable parameters (FORMULA_STUDENT_PARAMETERS numbers) instead of the file's;

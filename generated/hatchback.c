@@ -123,7 +123,7 @@
  */
 #include "hatchback.h"
 
-#if HATCHBACK_H != 0x3a86bbeb
+#if HATCHBACK_H != 0x3066d6c3
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 

@@ -122,7 +122,7 @@
  * With head.most = N, 4 ratio + 4 or more, no step takes more than N, whatever happens in it (EVENTS.md section 10).
  */
 #ifndef HATCHBACK_H
-#define HATCHBACK_H 0x3a86bbeb
+#define HATCHBACK_H 0x3066d6c3
 
 #include "gic_runtime.h"
 
@@ -452,7 +452,8 @@ typedef struct hatchback {
     gic_real touch[2 * HATCHBACK_CONTACTS]; /* how near contacts were at the ends of the last two steps */
 } hatchback;
 
-/* Bring an instance to the design configuration at time 0, at rest, inputs at their defaults, on a flat road. */
+/* Bring an instance to the design configuration at time 0, at rest, inputs at their defaults, on a flat road. What it
+ * held before is gone, also where this ends in a status: then it must be set up again. */
 int hatchback_setup(hatchback *self);
 
 /* The same with these values of the tunable parameters (HATCHBACK_PARAMETERS numbers) instead of the file's;

@@ -86,7 +86,7 @@
  */
 #include "hmmwv.h"
 
-#if HMMWV_H != 0x88d430ab
+#if HMMWV_H != 0x4eb9af8b
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 

@@ -85,7 +85,7 @@
  * With head.most = N, 4 ratio + 4 or more, no step takes more than N, whatever happens in it (EVENTS.md section 10).
  */
 #ifndef HMMWV_H
-#define HMMWV_H 0x88d430ab
+#define HMMWV_H 0x4eb9af8b
 
 #include "gic_runtime.h"
 
@@ -265,7 +265,8 @@ typedef struct hmmwv {
     gic_real touch[2 * HMMWV_CONTACTS]; /* how near contacts were at the ends of the last two steps */
 } hmmwv;
 
-/* Bring an instance to the design configuration at time 0, at rest, inputs at their defaults, on a flat road. */
+/* Bring an instance to the design configuration at time 0, at rest, inputs at their defaults, on a flat road. What it
+ * held before is gone, also where this ends in a status: then it must be set up again. */
 int hmmwv_setup(hmmwv *self);
 
 /* The same with these values of the tunable parameters (HMMWV_PARAMETERS numbers) instead of the file's; `parameter`

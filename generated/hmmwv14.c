@@ -88,7 +88,7 @@
  */
 #include "hmmwv14.h"
 
-#if HMMWV14_H != 0x7c2e3c19
+#if HMMWV14_H != 0xd6c795a5
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 

@@ -87,7 +87,7 @@
  * With head.most = N, 4 ratio + 4 or more, no step takes more than N, whatever happens in it (EVENTS.md section 10).
  */
 #ifndef HMMWV14_H
-#define HMMWV14_H 0x7c2e3c19
+#define HMMWV14_H 0xd6c795a5
 
 #include "gic_runtime.h"
 
@@ -283,7 +283,8 @@ typedef struct hmmwv14 {
     gic_real touch[2 * HMMWV14_CONTACTS]; /* how near contacts were at the ends of the last two steps */
 } hmmwv14;
 
-/* Bring an instance to the design configuration at time 0, at rest, inputs at their defaults, on a flat road. */
+/* Bring an instance to the design configuration at time 0, at rest, inputs at their defaults, on a flat road. What it
+ * held before is gone, also where this ends in a status: then it must be set up again. */
 int hmmwv14_setup(hmmwv14 *self);
 
 /* The same with these values of the tunable parameters (HMMWV14_PARAMETERS numbers) instead of the file's; `parameter`

@@ -86,7 +86,7 @@
  */
 #include "hmmwv_full.h"
 
-#if HMMWV_FULL_H != 0xe409be75
+#if HMMWV_FULL_H != 0xe614db1d
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 

@@ -85,7 +85,7 @@
  * With head.most = N, 4 ratio + 4 or more, no step takes more than N, whatever happens in it (EVENTS.md section 10).
  */
 #ifndef HMMWV_FULL_H
-#define HMMWV_FULL_H 0xe409be75
+#define HMMWV_FULL_H 0xe614db1d
 
 #include "gic_runtime.h"
 
@@ -275,7 +275,8 @@ typedef struct hmmwv_full {
     gic_real touch[2 * HMMWV_FULL_CONTACTS]; /* how near contacts were at the ends of the last two steps */
 } hmmwv_full;
 
-/* Bring an instance to the design configuration at time 0, at rest, inputs at their defaults, on a flat road. */
+/* Bring an instance to the design configuration at time 0, at rest, inputs at their defaults, on a flat road. What it
+ * held before is gone, also where this ends in a status: then it must be set up again. */
 int hmmwv_full_setup(hmmwv_full *self);
 
 /* The same with these values of the tunable parameters (HMMWV_FULL_PARAMETERS numbers) instead of the file's;

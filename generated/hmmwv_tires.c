@@ -90,7 +90,7 @@
  */
 #include "hmmwv_tires.h"
 
-#if HMMWV_TIRES_H != 0x52c84385
+#if HMMWV_TIRES_H != 0x954f6269
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 

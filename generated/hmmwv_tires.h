@@ -89,7 +89,7 @@
  * With head.most = N, 4 ratio + 4 or more, no step takes more than N, whatever happens in it (EVENTS.md section 10).
  */
 #ifndef HMMWV_TIRES_H
-#define HMMWV_TIRES_H 0x52c84385
+#define HMMWV_TIRES_H 0x954f6269
 
 #include "gic_runtime.h"
 
@@ -355,7 +355,8 @@ typedef struct hmmwv_tires {
     gic_real touch[2 * HMMWV_TIRES_CONTACTS]; /* how near contacts were at the ends of the last two steps */
 } hmmwv_tires;
 
-/* Bring an instance to the design configuration at time 0, at rest, inputs at their defaults, on a flat road. */
+/* Bring an instance to the design configuration at time 0, at rest, inputs at their defaults, on a flat road. What it
+ * held before is gone, also where this ends in a status: then it must be set up again. */
 int hmmwv_tires_setup(hmmwv_tires *self);
 
 /* The same with these values of the tunable parameters (HMMWV_TIRES_PARAMETERS numbers) instead of the file's;

@@ -90,7 +90,7 @@
  */
 #include "hmmwv_tmeasy.h"
 
-#if HMMWV_TMEASY_H != 0xa7837203
+#if HMMWV_TMEASY_H != 0xd47f1567
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 

@@ -91,7 +91,7 @@
  */
 #include "hmmwv_vehicle.h"
 
-#if HMMWV_VEHICLE_H != 0xb3053c61
+#if HMMWV_VEHICLE_H != 0xfa197cbd
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 

@@ -90,7 +90,7 @@
  * With head.most = N, 4 ratio + 4 or more, no step takes more than N, whatever happens in it (EVENTS.md section 10).
  */
 #ifndef HMMWV_VEHICLE_H
-#define HMMWV_VEHICLE_H 0xb3053c61
+#define HMMWV_VEHICLE_H 0xfa197cbd
 
 #include "gic_runtime.h"
 
@@ -372,7 +372,8 @@ typedef struct hmmwv_vehicle {
     gic_real touch[2 * HMMWV_VEHICLE_CONTACTS]; /* how near contacts were at the ends of the last two steps */
 } hmmwv_vehicle;
 
-/* Bring an instance to the design configuration at time 0, at rest, inputs at their defaults, on a flat road. */
+/* Bring an instance to the design configuration at time 0, at rest, inputs at their defaults, on a flat road. What it
+ * held before is gone, also where this ends in a status: then it must be set up again. */
 int hmmwv_vehicle_setup(hmmwv_vehicle *self);
 
 /* The same with these values of the tunable parameters (HMMWV_VEHICLE_PARAMETERS numbers) instead of the file's;

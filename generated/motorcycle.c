@@ -67,7 +67,7 @@
  */
 #include "motorcycle.h"
 
-#if MOTORCYCLE_H != 0xbaadac9d
+#if MOTORCYCLE_H != 0xe7d9eb95
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 

@@ -66,7 +66,7 @@
  * With head.most = N, 4 ratio + 4 or more, no step takes more than N, whatever happens in it (EVENTS.md section 10).
  */
 #ifndef MOTORCYCLE_H
-#define MOTORCYCLE_H 0xbaadac9d
+#define MOTORCYCLE_H 0xe7d9eb95
 
 #include "gic_runtime.h"
 
@@ -272,7 +272,8 @@ typedef struct motorcycle {
     gic_real touch[2 * MOTORCYCLE_CONTACTS]; /* how near contacts were at the ends of the last two steps */
 } motorcycle;
 
-/* Bring an instance to the design configuration at time 0, at rest, inputs at their defaults, on a flat road. */
+/* Bring an instance to the design configuration at time 0, at rest, inputs at their defaults, on a flat road. What it
+ * held before is gone, also where this ends in a status: then it must be set up again. */
 int motorcycle_setup(motorcycle *self);
 
 /* The same with these values of the tunable parameters (MOTORCYCLE_PARAMETERS numbers) instead of the file's;

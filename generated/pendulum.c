@@ -29,7 +29,7 @@
  */
 #include "pendulum.h"
 
-#if PENDULUM_H != 0x340bdc1b
+#if PENDULUM_H != 0x38bcfecf
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 

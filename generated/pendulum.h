@@ -28,7 +28,7 @@
  *   outputs, when asked for                                    2        12       0      0         0
  */
 #ifndef PENDULUM_H
-#define PENDULUM_H 0x340bdc1b
+#define PENDULUM_H 0x38bcfecf
 
 #include "gic_runtime.h"
 
@@ -128,7 +128,8 @@ typedef struct pendulum {
     gic_real multiplier[PENDULUM_MULTIPLIER_ROOM];    /* of the constraints, where outputs need them */
 } pendulum;
 
-/* Bring an instance to the design configuration at time 0, at rest, inputs at their defaults, on a flat road. */
+/* Bring an instance to the design configuration at time 0, at rest, inputs at their defaults, on a flat road. What it
+ * held before is gone, also where this ends in a status: then it must be set up again. */
 int pendulum_setup(pendulum *self);
 
 /* The same with these values of the tunable parameters (PENDULUM_PARAMETERS numbers) instead of the file's; `parameter`

@@ -55,7 +55,7 @@
  * With head.most = N, 4 ratio + 4 or more, no step takes more than N, whatever happens in it (EVENTS.md section 10).
  */
 #ifndef QUARTER_CAR_H
-#define QUARTER_CAR_H 0x3252e9c1
+#define QUARTER_CAR_H 0x20787c25
 
 #include "gic_runtime.h"
 
@@ -171,7 +171,8 @@ typedef struct quarter_car {
     gic_real touch[2 * QUARTER_CAR_CONTACTS]; /* how near contacts were at the ends of the last two steps */
 } quarter_car;
 
-/* Bring an instance to the design configuration at time 0, at rest, inputs at their defaults, on a flat road. */
+/* Bring an instance to the design configuration at time 0, at rest, inputs at their defaults, on a flat road. What it
+ * held before is gone, also where this ends in a status: then it must be set up again. */
 int quarter_car_setup(quarter_car *self);
 
 /* The same with these values of the tunable parameters (QUARTER_CAR_PARAMETERS numbers) instead of the file's;

@@ -130,7 +130,7 @@
  */
 #include "semitrailer.h"
 
-#if SEMITRAILER_H != 0x631af98b
+#if SEMITRAILER_H != 0x7418c423
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 

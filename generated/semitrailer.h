@@ -129,7 +129,7 @@
  * With head.most = N, 4 ratio + 4 or more, no step takes more than N, whatever happens in it (EVENTS.md section 10).
  */
 #ifndef SEMITRAILER_H
-#define SEMITRAILER_H 0x631af98b
+#define SEMITRAILER_H 0x7418c423
 
 #include "gic_runtime.h"
 
@@ -697,7 +697,8 @@ typedef struct semitrailer {
     gic_real touch[2 * SEMITRAILER_CONTACTS]; /* how near contacts were at the ends of the last two steps */
 } semitrailer;
 
-/* Bring an instance to the design configuration at time 0, at rest, inputs at their defaults, on a flat road. */
+/* Bring an instance to the design configuration at time 0, at rest, inputs at their defaults, on a flat road. What it
+ * held before is gone, also where this ends in a status: then it must be set up again. */
 int semitrailer_setup(semitrailer *self);
 
 /* The same with these values of the tunable parameters (SEMITRAILER_PARAMETERS numbers) instead of the file's;

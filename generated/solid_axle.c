@@ -75,7 +75,7 @@
  */
 #include "solid_axle.h"
 
-#if SOLID_AXLE_H != 0x36966f6f
+#if SOLID_AXLE_H != 0xae39c8b3
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 

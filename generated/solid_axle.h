@@ -74,7 +74,7 @@
  * With head.most = N, 4 ratio + 4 or more, no step takes more than N, whatever happens in it (EVENTS.md section 10).
  */
 #ifndef SOLID_AXLE_H
-#define SOLID_AXLE_H 0x36966f6f
+#define SOLID_AXLE_H 0xae39c8b3
 
 #include "gic_runtime.h"
 
@@ -259,7 +259,8 @@ typedef struct solid_axle {
     gic_real touch[2 * SOLID_AXLE_CONTACTS]; /* how near contacts were at the ends of the last two steps */
 } solid_axle;
 
-/* Bring an instance to the design configuration at time 0, at rest, inputs at their defaults, on a flat road. */
+/* Bring an instance to the design configuration at time 0, at rest, inputs at their defaults, on a flat road. What it
+ * held before is gone, also where this ends in a status: then it must be set up again. */
 int solid_axle_setup(solid_axle *self);
 
 /* The same with these values of the tunable parameters (SOLID_AXLE_PARAMETERS numbers) instead of the file's;

@@ -78,7 +78,7 @@
  */
 #include "trailing_arm.h"
 
-#if TRAILING_ARM_H != 0x3ae5991b
+#if TRAILING_ARM_H != 0x9aca8dd7
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 

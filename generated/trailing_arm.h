@@ -77,7 +77,7 @@
  * With head.most = N, 4 ratio + 4 or more, no step takes more than N, whatever happens in it (EVENTS.md section 10).
  */
 #ifndef TRAILING_ARM_H
-#define TRAILING_ARM_H 0x3ae5991b
+#define TRAILING_ARM_H 0x9aca8dd7
 
 #include "gic_runtime.h"
 
@@ -269,7 +269,8 @@ typedef struct trailing_arm {
     gic_real touch[2 * TRAILING_ARM_CONTACTS]; /* how near contacts were at the ends of the last two steps */
 } trailing_arm;
 
-/* Bring an instance to the design configuration at time 0, at rest, inputs at their defaults, on a flat road. */
+/* Bring an instance to the design configuration at time 0, at rest, inputs at their defaults, on a flat road. What it
+ * held before is gone, also where this ends in a status: then it must be set up again. */
 int trailing_arm_setup(trailing_arm *self);
 
 /* The same with these values of the tunable parameters (TRAILING_ARM_PARAMETERS numbers) instead of the file's;

@@ -6,7 +6,7 @@
  * A generated model `car.c` defines one structure, `car`, that holds everything one vehicle needs
  * and no pointer into itself: copying it is a snapshot, and any number of instances run side by
  * side. Functions take the instance first, return GIC_OK or a status, and on any other status than
- * GIC_OK leave state and time as they were. Typical use:
+ * GIC_OK leave state and time as they were, but for set-up, which begins anew in any case. Typical use:
  *
  *     car vehicle;
  *     if (car_setup(&vehicle) != GIC_OK) ...
@@ -43,7 +43,8 @@ typedef double gic_real;
 #endif
 #define GIC_R(x) ((gic_real)(x))
 
-/* X(name, code, text): 0 is success; a negative status means that the call changed nothing and has no result. */
+/* X(name, code, text): 0 is success; a negative status means that the call has no result and, unless it is a set-up,
+ * changed nothing. */
 #define GIC_STATUS_LIST(X) \
     X(GIC_OK, 0, "ok") \
     X(GIC_ERROR_ARGUMENT, -1, "an argument is out of range (step, method, time or size)") \

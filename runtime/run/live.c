@@ -275,7 +275,9 @@ void live(Pool *pool, const Engine *engine, const Model *model, const Scene *sce
     live_port_send(port, l.steps, GIC_LIVE_OVER, l.row);
     live_rank_restore(&l.rank);
     engine_rest(engine);
-    if (gic_time(l.self) > l.recorded) /* a recording ends where the run did */
+    if (status != GIC_OK) /* a recording ends where the run did, so that a step that fails is made again */
+        live_record_inputs(l.record, (double)(l.steps + 1) * scene->step, scene->hold->by, scene->hold->value);
+    else if (gic_time(l.self) > l.recorded)
         record_inputs(&l);
     live_record_close(l.record);
     interrupt_take();

@@ -219,6 +219,29 @@ for signal in INT TERM; do
     check 'with whole files' again "$quarter" "$root/models/scenes/quarter_car.scene"
 done
 
+# ---- a run that fails: its recording fails as well
+
+cat <<'END' >failing.veh
+gicgen: 1
+model: failing
+base: ground
+bodies:
+  m: {mass: 1, com: [0, 0, 0], inertia: [1, 1, 1]}
+joints:
+  g: {type: prismatic, bodies: [ground, m], axis: [1, 0, 0]}
+coordinates:
+  x: {type: translation, bodies: [ground, m], axis: [1, 0, 0]}
+inputs:
+  push: {unit: N}
+forces:
+  f: {type: force, coordinate: x, value: "push - 1e6 * x"}
+END
+printf 'gicscene: 1\nduration: 2\nstep: 0.005\ninitial: {coordinates: {x: 0.01}}\n' >failing.scene
+run --live 0 failing.veh failing.scene --seconds 3 --record inputs.csv
+check 'a run that fails' exits 1
+run -q --replay inputs.csv failing.veh failing.scene -o again.csv
+check 'fails when it is replayed' exits 1
+
 # ---- mistakes
 
 begin "$quarter" "$root/models/scenes/quarter_car.scene" --seconds 20

@@ -472,6 +472,7 @@ class Batch:
         """Back to the start, at time 0, with the present parameters: all, or where the mask is not 0."""
         mask = self._which(which)
         call("batch_reset", self._handle, None if mask is None else mask.ctypes.data)
+        self.status[slice(None) if mask is None else mask != 0] = 0
 
     def restart(self, which=None):
         """Forget the integrator's history, after states have changed."""
