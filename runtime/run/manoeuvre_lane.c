@@ -9,9 +9,9 @@
 
 static const double before = 12;                                         /* m from the start to the first lane */
 static const double begin[] = {10, 8, 6, 13}, fastest = 60, close = 0.1; /* m/s; begin: tried until one does */
-/* What the driver tries, one after the other: how far he looks ahead, by the preview found for him, m within a lane
- * where his line leaves it. */
-enum { LOOKS = 4, TURNS = 3, WAYS = LOOKS * TURNS };
+/* What the driver tries, one after the other: how far he looks ahead, by the preview found for him; m within a lane
+ * where his line leaves it; and then all of it again steering as for a vehicle without slip, gain 1. */
+enum { LOOKS = 4, TURNS = 3, GAINS = 2, WAYS = LOOKS * TURNS * GAINS };
 static const double looks[LOOKS] = {1, 2 / 3.0, 4 / 3.0, 5 / 3.0}, turns[TURNS] = {1.5, 0, 3};
 
 enum { LANES = 3 };
@@ -21,13 +21,14 @@ typedef struct Lane {
 } Lane;
 
 /* The vehicle as a rectangle: half its width, and its axles from the centre of mass. tried: the order in which the
- * driver tries; what led through last is first, as `driver`, with what he looked ahead in `used`, s. */
+ * driver tries; what led through last is first, as `driver`, with what he looked ahead in `used`, s, and
+ * steered by in `used_gain`. */
 typedef struct Course {
     Lane lane[LANES];
     double half, axle[2];
     int tried[WAYS];
     PathDriver driver;
-    double used;
+    double used, used_gain;
 } Course;
 
 static Course course_of(const Manoeuvre *m)
@@ -138,12 +139,15 @@ static const Trial *drive(Manoeuvre *m, Course *c, double speed, const char **wh
         const double duration = (c->lane[LANES - 1].to + 20) / speed * 2;
         PathDriver tries = driver;
         tries.preview *= looks[i % LOOKS];
+        if (i / (LOOKS * TURNS))
+            tries.gain = 1;
         if (tries.preview < driver.stable[0] || tries.preview > driver.stable[1])
             continue;
-        const Trial *trial = trial_run(
-            car, pool_print(m->pool, "at %.4g m/s", speed),
-            car_scene(car, duration, speed, false, course_text(m, c, &tries, turns[i / LOOKS], drives ? speed : 0)),
-            is_through, c);
+        const Trial *trial =
+            trial_run(car, pool_print(m->pool, "at %.4g m/s", speed),
+                      car_scene(car, duration, speed, false,
+                                course_text(m, c, &tries, turns[i / LOOKS % TURNS], drives ? speed : 0)),
+                      is_through, c);
         const double *last = trial->row[trial->rows - 1];
         const int lane = touched(c, last);
         *why = trial->tipped                           ? "the vehicle tips over"
@@ -156,6 +160,7 @@ static const Trial *drive(Manoeuvre *m, Course *c, double speed, const char **wh
             c->tried[0] = i;
             c->driver = driver;
             c->used = tries.preview;
+            c->used_gain = tries.gain;
             return trial;
         }
     }
@@ -200,6 +205,7 @@ void manoeuvre_lane_change(Manoeuvre *m)
     sheet_add_way(s, NULL, "width", "Width of the vehicle", 2 * c.half);
     manoeuvre_driver_rows(m, &c.driver, "");
     sheet_add(s, NULL, "driver.used", "Preview that led through", "s", c.used);
+    sheet_add(s, NULL, "driver.used_gain", "Gain that led through", "1", c.used_gain);
     sheet_note(s, pool_print(m->pool, "at %.4g m/s: %s", high, limit ? limit : "not tried"));
     static const Channel over[] = {TRIAL_ANGLE, TRIAL_Y, TRIAL_AY, TRIAL_YAW_RATE, TRIAL_ROLL, TRIAL_SPEED};
     for (size_t i = 0; i < sizeof over / sizeof *over; ++i)
