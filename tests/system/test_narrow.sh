@@ -105,15 +105,15 @@ mkdir "$work/libm" && cp "$root"/runtime/*.h "$work/libm" && {
 # lanes MODEL SCENE WIDTH ROWS COMPILER...: so many calls solve subsets, or compute wheels, side by side
 lanes() {
     model=$1
-    scene=$2
+    of=$2
     width=$3
     rows=$4
     shift 4
-    name="$model, $(basename "$scene"), $width lanes, $*"
+    name="$model, $(basename "$of"), $width lanes, $*"
     for how in plain lanes; do
         [ $how = plain ] && more= || more="--lanes $width"
         # shellcheck disable=SC2086  # words
-        "$gicgen" $more --scene "$scene" "$models/$model.veh" -o "$work/$model.c" &&
+        "$gicgen" $more --scene "$of" "$models/$model.veh" -o "$work/$model.c" &&
             "$@" -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror -Wno-psabi -ffp-contract=off -DMODEL="${model}_model" \
                 -I"$work/libm" -I"$work" -o "$work/$how" "$root/tests/data/narrow/lanes.c" "$work/$model.c" "$root/runtime/gic_runtime.c" -lm &&
             "$work/$how" >"$work/$how.bits"
