@@ -82,8 +82,8 @@ const char *gic_status_text(int status);
 /* ---- road ------------------------------------------------------------------------------------- */
 
 /* A road z = h(x, y), world frame, metres: one of gic_road.h or your own. `height` sets out[0] = h, out[1] = dh/dx,
- * out[2] = dh/dy. `friction`: at a place, relative to the road that the tires were measured on, above 0; NULL: 1 everywhere.
- * `lane` is the instance's lane index. Data of a road follow this head in the user's own structure. */
+ * out[2] = dh/dy. `friction`: at a place, relative to the road that the tires were measured on, above 0; NULL: 1
+ * everywhere. `lane` is the instance's lane index. Data of a road follow this head in the user's own structure. */
 typedef struct gic_road {
     void (*height)(const struct gic_road *road, int32_t lane, gic_real time, gic_real x, gic_real y, gic_real out[3]);
     gic_real (*friction)(const struct gic_road *road, int32_t lane, gic_real time, gic_real x, gic_real y);

@@ -197,10 +197,10 @@ void write_contacts(void *context, Text *out, int indent);
 /* specialized.c: insertion points of checks of assumptions, and of the road. */
 extern const Insertions assumption_points, road_points;
 /* For the code of one scene; for other code only write_condition writes text. */
-int conditions(const Generation *g);                          /* texts of conditions and assumptions */
-void write_assumption_texts(Generation *g, Text *out);        /* they follow the texts of conditions */
-void write_narrowing(Generation *g, Text *out);               /* for the comment at the head of the file */
-void write_road(Generation *g, Text *out);                    /* the function that looks it up */
+int conditions(const Generation *g);                   /* texts of conditions and assumptions */
+void write_assumption_texts(Generation *g, Text *out); /* they follow the texts of conditions */
+void write_narrowing(Generation *g, Text *out);        /* for the comment at the head of the file */
+void write_road(Generation *g, Text *out);             /* the function that looks it up */
 /* Insertions: the place among the texts of the assumption that both sides have the same road; the same in a lane. */
 void write_across(void *context, Text *out, int indent);
 void write_across_lane(void *context, Text *out, int indent);
