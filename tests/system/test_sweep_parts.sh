@@ -386,7 +386,7 @@ check "a plan of a part" says "--slurm plans all parts" 2 sweep --slurm "$work/e
 check "a chunk alone" says "go with --slurm" 2 sweep --chunk 5
 check "a chunk and parts" says "not both" 2 sweep --slurm "$work/e" --chunk 5 --parts 8
 check "no time" says "--chunk takes seconds" 2 sweep --slurm "$work/e" --chunk 0
-check "merging with a model" says "--merge takes -o alone" 2 "$gicsweep" --merge "$work/plan" "$car"
+check "merging with a model" says "--merge takes -o, --report and --front" 2 "$gicsweep" --merge "$work/plan" "$car"
 check "merging nothing" says "/nowhere/plan: error: can't open" 1 "$gicsweep" --merge "$work/nowhere"
 check "merging over the plan" says "results do not go to" 2 "$gicsweep" --merge "$work/plan" -o "$work/plan/plan"
 check "nothing is made" [ ! -e "$work/e" ]

@@ -201,7 +201,8 @@ def files(root):
     page += "<h2>Definitions</h2>\n<p>The figure of each column of the files, by its name there; <code>models/KC.md</code> has the formulas.</p>\n<div class=\"curves\">\n"
     for name, (of, _) in FIGURES.items():
         if of != "load":
-            page += f"<figure>\n<figcaption>{name}</figcaption>\n{svg(name)}</figure>\n"
+            inside = svg(name).replace(' xmlns="http://www.w3.org/2000/svg"', "")  # a page knows it, and names no address
+            page += f"<figure>\n<figcaption>{name}</figcaption>\n{inside}</figure>\n"
     out[os.path.join(root, "templates", "kc_figures.html.in")] = page + "</div>\n"
     return out
 
