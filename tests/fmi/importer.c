@@ -515,7 +515,9 @@ static Status make(Attack *a, int which)
     case 3: return unit->Terminate(a->c);
     case 4: return unit->Reset(a->c);
     case 5: return unit->GetReal(a->c, &unit->d.variable[unit->d.rate[chance((unsigned)n)]].reference, 1, &value);
-    case 6: return unit->SetReal(a->c, input, input != NULL, &value);
+    case 6: /* friction takes no 0, so what it starts with */
+        value = input && unit->d.variable[a->input].starts ? unit->d.variable[a->input].start : 0;
+        return unit->SetReal(a->c, input, input != NULL, &value);
     case 7: value = unit->d.variable[a->state].start; return unit->SetReal(a->c, state, 1, &value);
     case 8: return unit->GetFMUstate(a->c, &a->kept);
     case 9: return unit->SetFMUstate(a->c, a->kept);
