@@ -241,7 +241,7 @@ class Calls(unittest.TestCase):
             batch.step(0.001)
         batch.step(0.001, check=False)
         self.assertEqual(list(batch.status != 0), [False, True, False, False])
-        batch.reset([1, 0, 0, 0])
+        batch.reset([0, 0, 1, 0])
         self.assertEqual(list(batch.status != 0), [False, True, False, False])
         batch.reset([0, 1, 0, 0])
         self.assertEqual(list(batch.status), [0, 0, 0, 0])
