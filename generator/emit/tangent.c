@@ -271,7 +271,7 @@ static void write_stillness(const Generation *g, Text *out, int indent, int s)
     for (int k = 0; k < 2; ++k) {
         text_print(out, "%*s%s", indent, "", k ? "idle = still && !turns" : "still = 1");
         for (int j = 0; j < subset->deps; ++j)
-            text_print(out, " && !(GIC_FABS(dlinks.%s[%d]) > R(0.0))", k ? "rate" : "x", j);
+            text_print(out, " && GIC_FABS(dlinks.%s[%d]) <= R(0.0)", k ? "rate" : "x", j); /* not so of a NaN */
         text_print(out, ";\n");
     }
     line(out, indent, "if (idle) {");

@@ -126,6 +126,20 @@ static void to_rate(const double theta[3], const double omega[3], double out[3])
         out[i] = omega[i] - once[i] / 2 + c * twice[i];
 }
 
+/* What the matrix there changes by while theta does, times omega: added to out. */
+static void add_rate_change(const double theta[3], const double by[3], const double omega[3], double out[3])
+{
+    double c, slope, once[3], twice[3], part[3], mixed[2][3];
+    turning(norm3(theta), &c, &slope);
+    cross3(theta, omega, once);
+    cross3(theta, once, twice);
+    cross3(by, once, mixed[0]);
+    cross3(by, omega, part);
+    cross3(theta, part, mixed[1]);
+    for (int i = 0; i < 3; ++i)
+        out[i] += -part[i] / 2 + slope * dot3(theta, by) * twice[i] + c * (mixed[0][i] + mixed[1][i]);
+}
+
 /* Velocity of the second point as the first body sees it, and the relative angular velocity; of velocities and angular
  * velocities of both ends, at `rates`. */
 static void relative(const KcRubber *rubber, const KcBent *bent, const double *rates, double v[3], double turn[3],
@@ -155,7 +169,7 @@ void kc_bend_rate(const KcRubber *rubber, const KcBent *bent, const KcLook *look
 void kc_bend_second(const KcRubber *rubber, const KcBent *bent, const KcLook *look, int a, const double *rates_b,
                     const double *second, double out[6])
 {
-    double v[3][3], turn[3][3], carrier[3][3], along[3], lever[3], part[3], omega[3], c, slope;
+    double v[3][3], turn[3][3], carrier[3][3], along[3], lever[3], part[3], omega[3];
     const double *theta = bent->q + 3;
     const double *rates[] = {look->slope + a * look->outputs, rates_b, second};
     for (int i = 0; i < 3; ++i)
@@ -171,18 +185,11 @@ void kc_bend_second(const KcRubber *rubber, const KcBent *bent, const KcLook *lo
     sub3(turn[2], part, along);
     apply3_transposed(bent->axes, along, omega);
     to_rate(theta, omega, out + 3);
-    double by[3], once[3], twice[3], mixed[2][3];
+    double by[3];
     apply3_transposed(bent->axes, turn[0], omega);
     to_rate(theta, omega, by); /* theta_,a */
     apply3_transposed(bent->axes, turn[1], omega);
-    turning(norm3(theta), &c, &slope);
-    cross3(theta, omega, once);
-    cross3(theta, once, twice);
-    cross3(by, once, mixed[0]);
-    cross3(by, omega, part);
-    cross3(theta, part, mixed[1]);
-    for (int i = 0; i < 3; ++i)
-        out[3 + i] += -part[i] / 2 + slope * dot3(theta, by) * twice[i] + c * (mixed[0][i] + mixed[1][i]);
+    add_rate_change(theta, by, omega, out + 3);
 }
 
 /* p - K q, or with p NULL -K q. */
@@ -228,30 +235,20 @@ double kc_rubber_slope(const Kc *kc, const KcLook *look, int a, int b, const dou
     return sum;
 }
 
-/* J^T x = x + 1/2 theta x x + c theta x (theta x x), and its rate while theta and x change. */
+/* A torque x against theta as one about the axes: the transposed matrix of to_rate(), which is that of -theta; and its
+ * rate while theta changes by `by` and x by `change`. */
 static void to_torque(const double theta[3], const double x[3], double out[3])
 {
-    double c, slope, once[3], twice[3];
-    turning(norm3(theta), &c, &slope);
-    cross3(theta, x, once);
-    cross3(theta, once, twice);
-    for (int i = 0; i < 3; ++i)
-        out[i] = x[i] + once[i] / 2 + c * twice[i];
+    const double back[3] = {-theta[0], -theta[1], -theta[2]};
+    to_rate(back, x, out);
 }
 
 static void to_torque_rate(const double theta[3], const double by[3], const double x[3], const double change[3],
                            double out[3])
 {
-    double c, slope, once[3], twice[3], part[3], mixed[2][3];
-    turning(norm3(theta), &c, &slope);
-    cross3(theta, x, once);
-    cross3(theta, once, twice);
-    cross3(by, x, part);
-    cross3(by, once, mixed[0]);
-    cross3(theta, part, mixed[1]);
-    to_torque(theta, change, out);
-    for (int i = 0; i < 3; ++i)
-        out[i] += part[i] / 2 + slope * dot3(theta, by) * twice[i] + c * (mixed[0][i] + mixed[1][i]);
+    const double back[3] = {-theta[0], -theta[1], -theta[2]}, back_by[3] = {-by[0], -by[1], -by[2]};
+    to_rate(back, change, out);
+    add_rate_change(back, back_by, x, out);
 }
 
 /* On the first body, of what acts on the second one, at a lever from its own end. */

@@ -60,7 +60,7 @@ static bool moves(const TangentRun *run, const gic_rule *rule, int *status)
     return found;
 }
 
-/* Values, or how they change, of a rule that does something. fresh: of the formula, before rounding. */
+/* Held values whose delay is over take effect: in a state, or in how one changes. */
 static void take_effects(const gic_model *code, const double *doing, double *state)
 {
     for (int c = 0, r = 0; c < code->controller_count; ++c)
