@@ -4,8 +4,9 @@
 tests/run.sh.
 
 The tests that take longest start first, by the processor times that earlier runs left in BUILD/test_seconds, otherwise
-by those of tests/seconds.txt. Each test has its own session, log, TMPDIR and GICGEN_CACHE; all of them go when it ends,
-with every process that it left. A line is printed as each test ends, the whole log of every failed one after all. The
+by those of tests/seconds.txt. Each test has its own session, log and TMPDIR; all of them go when it ends, with every
+process that it left. They share one GICGEN_CACHE, which is new: what one compiled the others have, by the compiler, its
+options and the code itself. A line is printed as each test ends, the whole log of every failed one after all. The
 last line is `N passed, N failed`; the exit status is 0 when none failed and some passed. An interrupt ends all tests.
 """
 import argparse
@@ -77,6 +78,7 @@ def end_session(session):
 class Tests:
     def __init__(self, build, jobs, names, work):
         self.build, self.jobs, self.work = build, jobs, work
+        os.mkdir(os.path.join(work, "cache"), 0o700)
         self.measured = read_seconds(os.path.join(build, "test_seconds"))
         self.expected = {**read_seconds(os.path.join(HERE, "seconds.txt")), **self.measured}
         self.waiting = sorted(names, key=self.seconds)
@@ -94,8 +96,7 @@ class Tests:
     def start(self, name):
         folder = os.path.join(self.work, name)
         os.makedirs(os.path.join(folder, "tmp"))
-        os.mkdir(os.path.join(folder, "cache"), 0o700)
-        environment = dict(os.environ, TMPDIR=os.path.join(folder, "tmp"), GICGEN_CACHE=os.path.join(folder, "cache"),
+        environment = dict(os.environ, TMPDIR=os.path.join(folder, "tmp"), GICGEN_CACHE=os.path.join(self.work, "cache"),
                            BUILD=self.build, PYTHONDONTWRITEBYTECODE="1")
         with open(os.path.join(folder, "log"), "w") as log:
             process = subprocess.Popen(command(self.build, name), stdin=subprocess.DEVNULL, stdout=log, stderr=log,
