@@ -35,6 +35,8 @@ else
 fi
 GICGEN_CACHE=
 export GICGEN_CACHE
+# the last of two levels of optimization counts
+echo "exec ${CC:-cc} \"\$@\" -O0" >"$work/cc"
 : >"$work/worst"
 mechanisms=0
 refused=0
@@ -85,7 +87,7 @@ judge() {
 # compare SEED WAY TOLERANCE: rows evaluated in a way against the reference; fails where the model is refused
 compare() {
     # shellcheck disable=SC2086  # an engine with its options
-    timeout 100 "$gicrun" --engine $2 --cc "${CC:-cc} -O0" --eval "$work/$1.states" "$work/$1.variant.veh" \
+    timeout 100 "$gicrun" --engine $2 --cc "sh $work/cc" --eval "$work/$1.states" "$work/$1.variant.veh" \
         -o "$work/$1.results" 2>"$work/said"
     status=$?
     if [ $status -eq 1 ] && [ "$2" = tape ]; then
@@ -152,7 +154,7 @@ scene() {
 # go SEED STEP ENGINE OUT: exit status of a run
 go() {
     # shellcheck disable=SC2086  # an engine with its options
-    timeout 100 "$gicrun" -q --engine $3 --cc "${CC:-cc} -O0" "$work/$1.veh" "$work/$1.$2.scene" -o "$4" 2>"$work/said"
+    timeout 100 "$gicrun" -q --engine $3 --cc "sh $work/cc" "$work/$1.veh" "$work/$1.$2.scene" -o "$4" 2>"$work/said"
 }
 
 # regular SEED: are all states of the run by gic far from singular configurations, in quad precision? A light mechanism
@@ -263,7 +265,7 @@ side_by_side() {
     scene "$1" 0.002
     comparisons=$((comparisons + 1))
     for engine in "" gic; do
-        "$gicsweep" -q "$work/$1.veh" "$work/$1.0.002.scene" --vary "state/$name.rate=-1:1:5" --cc "${CC:-cc} -O1" \
+        "$gicsweep" -q "$work/$1.veh" "$work/$1.0.002.scene" --vary "state/$name.rate=-1:1:5" --cc "sh $work/cc" \
             ${engine:+--engine $engine} -o "$work/$1.sweep$engine" 2>"$work/said" || {
             wrong sweep "$1" "${engine:-lanes}" "$(grep -m 1 error: "$work/said")"
             return
