@@ -25,9 +25,14 @@ typedef struct KcElement {
     bool angle;      /* x is in rad */
 } KcElement;
 
+/* The most of an axle. */
+enum { KC_WHEELS = 8 };
+
 typedef struct KcWheel {
-    const Wheel *wheel;
+    const Wheel *wheel; /* dual wheels: one in the middle of them, which the model does not have */
     const char *name;
+    int parts; /* of dual wheels their number, else 1 */
+    const Wheel *part[KC_WHEELS];
     double side; /* 1: left or in the middle, y >= 0; -1: right */
     double radius;
     bool shaft;   /* the torque of its drive is taken by another body than its carrier */
@@ -43,8 +48,8 @@ typedef struct KcRubber {
     double stiffness[BUSHING_AXES * BUSHING_AXES], preload[BUSHING_AXES];
 } KcRubber;
 
-/* The most of an axle, of coordinates that follow from rubber, and of those that move them. */
-enum { KC_WHEELS = 8, KC_FOLLOWERS = 40, KC_COLUMNS = 2 * KC_WHEELS + KC_FOLLOWERS };
+/* The most coordinates that follow from rubber, of an axle, and of those that move its wheels. */
+enum { KC_FOLLOWERS = 40, KC_COLUMNS = 2 * KC_WHEELS + KC_FOLLOWERS };
 
 /* Wheels of nearly the same x. */
 typedef struct KcAxle {
@@ -83,10 +88,10 @@ typedef struct Kc {
     double *f, *df, *dout; /* work */
 } Kc;
 
-/* join: dual wheels are one wheel in the middle of them. axle: name or number of the one that is asked for, NULL: all.
+/* Dual wheels are one wheel in the middle of them. axle: name or number of the one that is asked for, NULL: all.
  * scene: its parameters are those of set-up; NULL: the model's. Ends in diag_fail where the model has no wheels, or no
  * such axle. */
-Kc *kc_open(Pool *pool, const Model *model, const Scene *scene, Solve solve, const char *axle, bool join);
+Kc *kc_open(Pool *pool, const Model *model, const Scene *scene, Solve solve, const char *axle);
 
 /* Add a hidden output to a model that is to be measured; returns the place of its first component among all. */
 int kc_watch(Pool *pool, Model *model, Output output);

@@ -24,7 +24,7 @@ static void add_axle(Sheet *sheet, const KcStudy *study, int a)
                 sheet_add(sheet, section, pool_print(sheet->pool, "%s.%s", axle->wheel[i].name, kc_of_wheel[q].name),
                           pool_print(sheet->pool, "%s, %s", kc_of_wheel[q].title, axle->wheel[i].name),
                           kc_of_wheel[q].unit, row->wheel[i][q]);
-                sheet_place(sheet, axle, i, kc_of_wheel[q].name);
+                sheet_place(sheet, axle, i, 0, kc_of_wheel[q].name);
                 section = NULL;
             }
     for (int e = 0; e < kc->elements; ++e)
@@ -32,7 +32,7 @@ static void add_axle(Sheet *sheet, const KcStudy *study, int a)
             sheet_add(sheet, NULL, pool_print(sheet->pool, "%s.ratio.%s", axle->wheel[i].name, kc->element[e].name),
                       pool_print(sheet->pool, "Motion ratio of %s, %s", kc->element[e].name, axle->wheel[i].name),
                       kc->element[e].angle ? "rad/m" : "1", row->ratio[i * kc->elements + e]);
-            sheet_place(sheet, axle, i, pool_print(sheet->pool, "ratio.%s", kc->element[e].name));
+            sheet_place(sheet, axle, i, 0, pool_print(sheet->pool, "ratio.%s", kc->element[e].name));
         }
     for (int q = 0; q < KC_OF_AXLE; ++q) {
         const double value = kc_zero(study, a, q)->axle[q];

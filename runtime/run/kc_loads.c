@@ -130,7 +130,7 @@ Sheet kc_loads_sheet(Pool *pool, const Model *model, const Kc *kc)
                                          axle->wheel[i].name),
                               pool_print(pool, strcmp(unit, "N") ? "%s/(%s)" : "%s/%s", c < ANGLES ? "rad" : "m", unit),
                               number[c]);
-                    sheet_place(&sheet, axle, i, pool_print(pool, "%s.%s", by, column[c]));
+                    sheet_place(&sheet, axle, i, 0, pool_print(pool, "%s.%s", by, column[c]));
                     section = NULL;
                 }
             }

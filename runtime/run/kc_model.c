@@ -136,6 +136,8 @@ typedef struct Placed {
     double x, y;
     int index;
     const Wheel *wheel; /* NULL: joined to another one */
+    int parts;          /* of dual wheels */
+    const Wheel *part[KC_WHEELS];
 } Placed;
 
 static int by_x(const void *a, const void *b)
@@ -167,30 +169,28 @@ static int join_twins(Kc *kc, const Model *model, Placed *placed)
 {
     int left = 0;
     for (int i = 0; i < model->wheels; ++i) {
-        int twins = 1;
         Wheel *joined = pool_alloc(kc->pool, sizeof *joined);
         if (!placed[i].wheel)
             continue;
         *joined = *placed[i].wheel;
         for (int j = i + 1; j < model->wheels; ++j) {
-            if (!placed[j].wheel || !is_twin(model, &placed[i], &placed[j]))
+            if (!placed[j].wheel || placed[i].parts == KC_WHEELS || !is_twin(model, &placed[i], &placed[j]))
                 continue;
             add3(joined->center, placed[j].wheel->center, joined->center);
             joined->name = pool_print(kc->pool, "%s+%s", joined->name, placed[j].wheel->name);
+            placed[i].part[placed[i].parts++] = placed[j].wheel;
             placed[j].wheel = NULL;
-            ++twins;
         }
         for (int k = 0; k < 3; ++k)
-            joined->center[k] /= twins;
-        placed[left] = placed[i];
-        placed[left++].wheel = twins > 1 ? joined : placed[i].wheel;
+            joined->center[k] /= placed[i].parts;
+        placed[i].wheel = placed[i].parts > 1 ? joined : placed[i].wheel;
+        placed[left++] = placed[i];
     }
     return left;
 }
 
-/* Wheels from the foremost back; one that is less than its radius behind the first of an axle belongs to it. join:
- * dual wheels are one. */
-static void find_axles(Kc *kc, Model *model, bool join)
+/* Wheels from the foremost back; one that is less than its radius behind the first of an axle belongs to it. */
+static void find_axles(Kc *kc, Model *model)
 {
     Placed *placed = pool_alloc(kc->pool, ((size_t)model->wheels + 1) * sizeof *placed);
     for (int i = 0; i < model->wheels; ++i) {
@@ -198,14 +198,17 @@ static void find_axles(Kc *kc, Model *model, bool join)
         double A[9], at[3];
         mat_from_euler(body->euler, A);
         apply3(A, model->wheel[i].center, at);
-        placed[i] = (Placed){at[0] + body->position[0], at[1] + body->position[1], i, &model->wheel[i]};
+        placed[i] =
+            (Placed){at[0] + body->position[0], at[1] + body->position[1], i, &model->wheel[i], 1, {&model->wheel[i]}};
     }
     qsort(placed, (size_t)model->wheels, sizeof *placed, by_x);
     double first = 0;
-    const int wheels = join ? join_twins(kc, model, placed) : model->wheels;
+    const int wheels = join_twins(kc, model, placed);
     for (int i = 0; i < wheels; ++i) {
         KcWheel wheel = watch_wheel(kc, model, placed[i].wheel);
         wheel.side = placed[i].y < 0 ? -1 : 1;
+        wheel.parts = placed[i].parts;
+        memcpy(wheel.part, placed[i].part, sizeof wheel.part);
         KcAxle *axle = kc->axles ? &kc->axle[kc->axles - 1] : NULL;
         if (!axle || first - placed[i].x >= wheel.radius || axle->wheels == KC_WHEELS) {
             axle = POOL_PUSH(kc->pool, kc->axle, kc->axles);
@@ -544,7 +547,7 @@ void kc_warn(const Kc *kc)
                   kc->rubbers > 1 ? "are" : "is");
 }
 
-Kc *kc_open(Pool *pool, const Model *model, const Scene *scene, Solve solve, const char *axle, bool join)
+Kc *kc_open(Pool *pool, const Model *model, const Scene *scene, Solve solve, const char *axle)
 {
     Kc *kc = pool_alloc(pool, sizeof *kc);
     Model *copy = pool_alloc(pool, sizeof *copy);
@@ -558,7 +561,7 @@ Kc *kc_open(Pool *pool, const Model *model, const Scene *scene, Solve solve, con
     if (!model->wheels)
         diag_fail((Place){model->source, 0, 0}, "give it `wheels`", "model '%s' has no wheels, and so no axles",
                   model->name);
-    find_axles(kc, copy, join);
+    find_axles(kc, copy);
     for (int i = 0; i < model->forces; ++i)
         add_element(kc, copy, &model->force[i], i);
     kc->outputs = copy->output_components;

@@ -14,7 +14,7 @@
 
 KcStudy kc_study(Pool *pool, const Model *model, const Scene *scene, const Request *request)
 {
-    const Kc *kc = kc_open(pool, model, scene, request->solve, request->axle, true);
+    const Kc *kc = kc_open(pool, model, scene, request->solve, request->axle);
     KcStudy study = {.kc = kc, .travel = request->travel > 0 ? request->travel : kc_usual_travel};
     if (!request->joints)
         kc_warn(kc);
@@ -236,7 +236,7 @@ static void note_units(Pool *pool, const KcStudy *study, const Request *request)
 /* --loads: compliance alone. */
 static void report_loads(Pool *pool, const Model *model, const Scene *scene, const Request *request)
 {
-    const Kc *kc = kc_open(pool, model, scene, request->solve, request->axle, true);
+    const Kc *kc = kc_open(pool, model, scene, request->solve, request->axle);
     const char *why = NULL, *first = NULL;
     bool gives = false;
     for (int a = 0; a < kc->axles; ++a) {
@@ -252,8 +252,8 @@ static void report_loads(Pool *pool, const Model *model, const Scene *scene, con
         const char *name;
         const Model *model_of_other = sheet_other(pool, model, request->compare, &name);
         Sheet sheet = kc_loads_sheet(pool, model, kc);
-        const Sheet other = kc_loads_sheet(pool, model_of_other,
-                                           kc_open(pool, model_of_other, NULL, request->solve, request->axle, true));
+        const Sheet other =
+            kc_loads_sheet(pool, model_of_other, kc_open(pool, model_of_other, NULL, request->solve, request->axle));
         sheet_beside(&sheet, &other, name, request->results, ": compliance, models/KC.md defines it");
         return;
     }

@@ -57,8 +57,9 @@ static void find_travel(TestCar *car)
         car->travel[w] = -1;
         for (int a = 0; a < kc->axles; ++a)
             for (int k = 0; k < kc->axle[a].wheels && !kc->axle[a].refusal; ++k)
-                if (!strcmp(kc->axle[a].wheel[k].name, car->model->wheel[w].name))
-                    car->travel[w] = kc->axle[a].travel[k];
+                for (int i = 0; i < kc->axle[a].wheel[k].parts; ++i)
+                    if (!strcmp(kc->axle[a].wheel[k].part[i]->name, car->model->wheel[w].name))
+                        car->travel[w] = kc->axle[a].travel[k];
     }
 }
 

@@ -42,8 +42,9 @@ typedef struct Sheet {
 void sheet_add(Sheet *sheet, const char *section, const char *name, const char *title, const char *unit, double value);
 /* A way in m, which nobody reads in mm. */
 void sheet_add_way(Sheet *sheet, const char *section, const char *name, const char *title, double value);
-/* What the number added last is called in any vehicle: of a wheel of an axle, what follows. */
-void sheet_place(Sheet *sheet, const KcAxle *axle, int wheel, const char *what);
+/* What the number added last is called in any vehicle: of a wheel of an axle, and of one of dual wheels, from 0, what
+ * follows. */
+void sheet_place(Sheet *sheet, const KcAxle *axle, int wheel, int part, const char *what);
 void sheet_note(Sheet *sheet, const char *note);
 /* The same: what is not there, and why. */
 void sheet_miss(Sheet *sheet, const char *what);
@@ -94,8 +95,8 @@ void sheet_report(Pool *pool, const Model *model, const Scene *scene, const Requ
 const Model *sheet_other(Pool *pool, const Model *model, const char *file, const char **name);
 /* The same file: the model with the values of its parameters that a scene gives; itself where they are its own. */
 const Model *sheet_set(Pool *pool, const Model *model, const Scene *scene);
-/* The same file: what a wheel of an axle is called in any vehicle: front.left_1. */
-const char *sheet_place_of(Pool *pool, const KcAxle *axle, int wheel);
+/* The same file: what a wheel of an axle, or one of dual wheels, is called in any vehicle: front.left_1. */
+const char *sheet_place_of(Pool *pool, const KcAxle *axle, int wheel, int part);
 /* The same file: numbers of another one, which is called `name`, beside those of the same places or names; then those
  * that only the other one has. */
 void sheet_compare(Sheet *sheet, const Sheet *other, const char *name);

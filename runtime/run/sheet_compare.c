@@ -45,18 +45,18 @@ const Model *sheet_other(Pool *pool, const Model *model, const char *file, const
     return sheet_set(pool, other, scene);
 }
 
-const char *sheet_place_of(Pool *pool, const KcAxle *axle, int wheel)
+const char *sheet_place_of(Pool *pool, const KcAxle *axle, int wheel, int part)
 {
-    int number = 1;
+    int number = 1 + part;
     for (int i = 0; i < wheel; ++i)
-        number += axle->wheel[i].side == axle->wheel[wheel].side;
+        number += axle->wheel[i].side == axle->wheel[wheel].side ? axle->wheel[i].parts : 0;
     return pool_print(pool, "%s.%s_%d", axle->name, axle->wheel[wheel].side > 0 ? "left" : "right", number);
 }
 
-void sheet_place(Sheet *sheet, const KcAxle *axle, int wheel, const char *what)
+void sheet_place(Sheet *sheet, const KcAxle *axle, int wheel, int part, const char *what)
 {
     sheet->row[sheet->rows - 1].place =
-        pool_print(sheet->pool, "%s.%s", sheet_place_of(sheet->pool, axle, wheel), what);
+        pool_print(sheet->pool, "%s.%s", sheet_place_of(sheet->pool, axle, wheel, part), what);
 }
 
 bool sheet_differs(const SheetRow *row)

@@ -9,19 +9,26 @@
 
 static const double alike = 0.5; /* below this two modes are different ones */
 
+/* What a wheel of the model is called in any vehicle; NULL: it has no axle. */
+static const char *place_of_wheel(const Sheet *sheet, int wheel)
+{
+    for (int a = 0; a < sheet->kc->axles; ++a)
+        for (int i = 0; i < sheet->kc->axle[a].wheels; ++i)
+            for (int k = 0; k < sheet->kc->axle[a].wheel[i].parts; ++k)
+                if (sheet->kc->axle[a].wheel[i].part[k] == &sheet->model->wheel[wheel])
+                    return sheet_place_of(sheet->pool, &sheet->kc->axle[a], i, k);
+    return NULL;
+}
+
 /* The wheel of the other sheet at the same place of the axle of the same name; -1: there is none. */
 static int wheel_of(const Sheet *sheet, const Sheet *other, int wheel)
 {
-    for (int a = 0; a < sheet->kc->axles; ++a)
-        for (int i = 0; i < sheet->kc->axle[a].wheels; ++i) {
-            if (sheet->kc->axle[a].wheel[i].wheel != &sheet->model->wheel[wheel])
-                continue;
-            const char *place = sheet_place_of(sheet->pool, &sheet->kc->axle[a], i);
-            for (int b = 0; b < other->kc->axles; ++b)
-                for (int j = 0; j < other->kc->axle[b].wheels; ++j)
-                    if (!strcmp(place, sheet_place_of(sheet->pool, &other->kc->axle[b], j)))
-                        return (int)(other->kc->axle[b].wheel[j].wheel - other->model->wheel);
-        }
+    const char *place = place_of_wheel(sheet, wheel);
+    for (int w = 0; place && w < other->model->wheels; ++w) {
+        const char *there = place_of_wheel(other, w);
+        if (there && !strcmp(place, there))
+            return w;
+    }
     return -1;
 }
 

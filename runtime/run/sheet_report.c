@@ -153,7 +153,7 @@ Sheet sheet_open(Pool *pool, const Model *model, const Scene *scene, Solve solve
     if (!model->free_base || !model->wheels)
         diag_fail((Place){model->source, 0, 0}, "name a vehicle: a model with a free base and wheels",
                   "model '%s' has no %s", model->name, model->wheels ? "free base" : "wheels");
-    Sheet sheet = {.pool = pool, .model = model, .kc = kc_open(pool, model, scene, solve, NULL, false)};
+    Sheet sheet = {.pool = pool, .model = model, .kc = kc_open(pool, model, scene, solve, NULL)};
     sheet.found = equilibrium_find_locked(pool, model, scene, solve);
     const gic_model *code = sheet.found->engine->code;
     sheet.w = pool_alloc(pool, ((size_t)model->coordinates + 1) * sizeof *sheet.w);

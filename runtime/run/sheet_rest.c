@@ -97,9 +97,24 @@ static void masses(Sheet *sheet, const double *pose, const Carried *c)
     sheet_add(sheet, NULL, "inertia_yz", "Inertia, yz", "kg m^2", inertia[5]);
 }
 
-static int wheel_index(const Sheet *sheet, const KcWheel *wheel)
+/* Rows of a wheel, or of one of dual wheels. Returns its load. */
+static double add_load(Sheet *sheet, const KcAxle *axle, int wheel, int part)
 {
-    return (int)(wheel->wheel - sheet->kc->model->wheel);
+    const Equilibrium *found = sheet->found;
+    const double *output = tape_array(found->self, found->engine->code->output_offset);
+    const Wheel *one = axle->wheel[wheel].part[part];
+    const int number = (int)(one - sheet->kc->model->wheel);
+    const double *of = output + equilibrium_wheel(found, number);
+    sheet_add(sheet, NULL, pool_print(sheet->pool, "%s.load", one->name),
+              pool_print(sheet->pool, "Load of %s", one->name), "N", of[0]);
+    sheet_place(sheet, axle, wheel, part, "load");
+    sheet_add(sheet, NULL, pool_print(sheet->pool, "%s.deflection", one->name),
+              pool_print(sheet->pool, "Deflection of %s", one->name), "m", of[1]);
+    sheet_place(sheet, axle, wheel, part, "deflection");
+    const char *faded = equilibrium_faded(sheet->pool, found, output, number);
+    if (faded)
+        sheet_note(sheet, faded);
+    return of[0];
 }
 
 /* Loads, deflections and heights of the wheels at rest; the road under them. */
@@ -125,20 +140,9 @@ static void loads(Sheet *sheet, const double *pose, const Carried *c)
     for (int a = 0; a < sheet->kc->axles; ++a) {
         const KcAxle *axle = &sheet->kc->axle[a];
         double sum = 0;
-        for (int i = 0; i < axle->wheels; ++i) {
-            const KcWheel *wheel = &axle->wheel[i];
-            const double *of = output + equilibrium_wheel(found, wheel_index(sheet, wheel));
-            sum += of[0];
-            sheet_add(sheet, NULL, pool_print(sheet->pool, "%s.load", wheel->name),
-                      pool_print(sheet->pool, "Load of %s", wheel->name), "N", of[0]);
-            sheet_place(sheet, axle, i, "load");
-            sheet_add(sheet, NULL, pool_print(sheet->pool, "%s.deflection", wheel->name),
-                      pool_print(sheet->pool, "Deflection of %s", wheel->name), "m", of[1]);
-            sheet_place(sheet, axle, i, "deflection");
-            const char *faded = equilibrium_faded(sheet->pool, found, output, wheel_index(sheet, wheel));
-            if (faded)
-                sheet_note(sheet, faded);
-        }
+        for (int i = 0; i < axle->wheels; ++i)
+            for (int k = 0; k < axle->wheel[i].parts; ++k)
+                sum += add_load(sheet, axle, i, k);
         sheet_add(sheet, NULL, pool_print(sheet->pool, "%s.load", axle->name),
                   pool_print(sheet->pool, "Load of axle %s", axle->name), "N", sum);
         sheet_add(sheet, NULL, pool_print(sheet->pool, "%s.share", axle->name),
@@ -158,7 +162,14 @@ double sheet_axle_place(const Sheet *sheet, const KcAxle *axle, double *aside)
         KcPose pose;
         kc_pose(&axle->wheel[i], look, &pose);
         x += pose.contact[0] / axle->wheels;
-        *aside = fmax(*aside, fabs(pose.contact[1]));
+        const KcWheel *wheel = &axle->wheel[i];
+        double A[9], apart[3], drawn[3];
+        mat_from_euler(sheet->model->body[wheel->wheel->body].euler, A);
+        for (int k = 0; k < wheel->parts; ++k) { /* dual wheels, along their axis, which points to the left */
+            sub3(wheel->part[k]->center, wheel->wheel->center, apart);
+            apply3(A, apart, drawn);
+            *aside = fmax(*aside, fabs(pose.contact[1] + copysign(norm3(apart), drawn[1]) * pose.axis[1]));
+        }
     }
     return x;
 }
@@ -194,7 +205,7 @@ static void add_axle(Sheet *sheet, const KcAxle *axle)
                 sheet_add(sheet, section, pool_print(sheet->pool, "%s.%s", axle->wheel[i].name, q->name),
                           pool_print(sheet->pool, "%s, %s", q->title, axle->wheel[i].name), q->unit,
                           row.wheel[i][of_wheel[k]]);
-                sheet_place(sheet, axle, i, q->name);
+                sheet_place(sheet, axle, i, 0, q->name);
                 section = NULL;
             }
 }

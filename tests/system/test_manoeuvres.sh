@@ -18,6 +18,9 @@ verdict $? 'two units with linear tires'
 /usr/bin/python3 -B "$root/tests/vehicle/driver.py" "$gicrun" "$linear" "$work" >"$work/said" 2>&1
 verdict $? 'drivers that are found'
 
+/usr/bin/python3 -B "$root/tests/vehicle/dual_wheels.py" "$gicrun" "$linear" "$work" >"$work/said" 2>&1
+verdict $? 'dual wheels'
+
 # ---- articulated vehicles; one of one unit has no such rows
 two=$root/tests/data/manoeuvre/two_units.veh
 run --manoeuvre sine "$models/semitrailer.veh" speed=20 ay=1 frequency=0.4 --report "$work/page.html" --trace "$work/trace.csv"
