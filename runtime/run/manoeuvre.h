@@ -91,6 +91,13 @@ void units_motion(const double *output, double *row);
 
 /* ---- manoeuvre_car.c: what the vehicle can do ----------------------------------------------------------- */
 
+/* A driver who keeps a speed, as `speed` of a driver of models/SCENE.md section 5; found: false where no gains are. */
+typedef struct PedalDriver {
+    double speed; /* m/s at which he was found; 0: not asked for */
+    double gain, integral, full[2];
+    bool found;
+} PedalDriver;
+
 struct TestCar {
     Pool *pool;
     const Model *model; /* the user's, with outputs of wheels */
@@ -101,21 +108,23 @@ struct TestCar {
     int accelerator, brake; /* inputs of unit 1 of these names; -1: the model has none */
     const KcAxle *axle;     /* that is steered; NULL: none, `unsteered` says why */
     const char *unsteered;
-    int steering;        /* input of the steering coordinate; -1: none */
-    double angle;        /* mean road-wheel angle to the left by a unit of it; of wheels behind, to the right */
-    double straight;     /* its value straight ahead */
-    double range[2];     /* of the road-wheel angle */
-    int *load;           /* [wheels] components of outputs */
-    int *travel;         /* [wheels] coordinates that move them up and down; -1: none */
-    const Units *units;  /* NULL: it is one */
-    int unit;            /* the first component of the outputs of the last one */
-    double output_step;  /* s between rows */
-    const char *rest;    /* place and coordinates at rest, as keys of a scene's `initial` */
-    double settled;      /* the speed that was kept last; 0: none */
-    double reached;      /* the speed at the end of the last attempt to */
-    const char *running; /* gear and engine speed then, as keys of `initial` */
-    const char *remedy;  /* where it could not */
-    double aside[3];     /* left straight ahead: m/s^2 to the left, rad leant to the left, at a speed, m/s */
+    int steering;          /* input of the steering coordinate; -1: none */
+    double angle;          /* mean road-wheel angle to the left by a unit of it; of wheels behind, to the right */
+    double straight;       /* its value straight ahead */
+    double range[2];       /* of the road-wheel angle */
+    int *load;             /* [wheels] components of outputs */
+    int *travel;           /* [wheels] coordinates that move them up and down; -1: none */
+    const Units *units;    /* NULL: it is one */
+    int unit;              /* the first component of the outputs of the last one */
+    double output_step;    /* s between rows */
+    const char *rest;      /* place and coordinates at rest, as keys of a scene's `initial` */
+    double settled;        /* the speed that was kept last; 0: none */
+    const Trial *settling; /* how it was reached by pedals; NULL: it was not */
+    PedalDriver pedals;    /* who keeps it, from car_pedals() on */
+    double reached;        /* the speed at the end of the last attempt to */
+    const char *running;   /* gear and engine speed then, as keys of `initial` */
+    const char *remedy;    /* where it could not */
+    double aside[3];       /* left straight ahead: m/s^2 to the left, rad leant to the left, at a speed, m/s */
     const Request *request;
 };
 
@@ -140,6 +149,10 @@ const Model *car_stand_on_posts(TestCar *car, const char *text, const Scene **sc
  * speed of 0 nothing is done. car_settle(): the same, which ends in car_refuse(). */
 bool car_keeps(TestCar *car, double speed, const char **why);
 void car_settle(TestCar *car, double speed);
+/* manoeuvre_pedals.c: `speed` of a scene's driver, with a target as it stands in a scene, m/s: with gains that are
+ * found for the vehicle at the speed that was kept last, and before those of pedal_driver_first. */
+extern const PedalDriver pedal_driver_first;
+const char *car_pedals(TestCar *car, const char *target);
 /* Steering coordinate of a road-wheel angle. */
 double car_steering(const TestCar *car, double angle);
 /* The steady road-wheel angle for a lateral acceleration of 1 m/s^2, by the linear model; NAN: there is none. */
@@ -244,6 +257,17 @@ double manoeuvre_find_amplitude(Manoeuvre *manoeuvre);
 double manoeuvre_steady_angle(Manoeuvre *manoeuvre);
 const char *manoeuvre_step_profile(Manoeuvre *manoeuvre, double angle);
 const Trial *manoeuvre_step_trial(Manoeuvre *manoeuvre, double angle, const char *name);
+
+/* manoeuvre_pedals.c: rows of what keeps the speed; none where no pedals were asked for. */
+void manoeuvre_pedal_rows(Manoeuvre *manoeuvre);
+
+/* manoeuvre_driver.c: s from look to look of drivers; s that a movement of theirs takes, at least the period. */
+extern const double driver_period, driver_reach;
+/* Derivatives of a movement; those that go on when another one replaces it. */
+enum { DRIVER_MOVE = 8, DRIVER_KEPT = 4 };
+/* The polynomial from a movement's value and three derivatives, and its end, to its derivatives when it begins:
+ * movement_from() of scene/profile_form.h. */
+void driver_movement(const double now[DRIVER_KEPT], double end, double out[DRIVER_MOVE]);
 
 /* manoeuvre_driver.c: a driver who follows a path, found for a vehicle at a speed by its linear model. */
 typedef struct PathDriver {

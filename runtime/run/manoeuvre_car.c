@@ -124,6 +124,7 @@ TestCar *car_open(Pool *pool, const Model *model, const Request *request)
     find_steering(car);
     car->rest = rest_of(car);
     car->running = "";
+    car->pedals = pedal_driver_first;
     car->output_step = 0.01;
     open_engine(car, car->model);
     return car;
@@ -173,7 +174,7 @@ const char *car_scene(TestCar *car, double duration, double speed, bool drives, 
                "initial:\n%s  velocity: [%.17g, 0, 0]\n%s",
                duration, car->output_step, car->rest, speed, speed > 0 ? car->running : "");
     if (drives && car->accelerator >= 0 && car->brake >= 0)
-        text_print(&text, "driver:\n  speed: {target: %.17g, gain: 3, integral: 1}\n", speed);
+        text_print(&text, "driver:\n%s", car_pedals(car, pool_print(car->pool, "%.17g", speed)));
     text_print(&text, "%s", more ? more : "");
     return text.s;
 }
@@ -298,6 +299,23 @@ static bool is_settled(void *context, const Trial *trial)
     return settled->rows >= LONG_ENOUGH;
 }
 
+/* A drive straight ahead until the speed is kept: by the gains that serve most vehicles, and where these do not keep it
+ * by those that are found where they have brought it. */
+static const Trial *settle(TestCar *car, double speed, Settled *settled)
+{
+    car->settling = NULL;
+    car->pedals = pedal_driver_first;
+    for (int tries = 0;; ++tries) {
+        const Trial *trial =
+            trial_run(car, "settling", car_scene(car, settling, speed, true, NULL), is_settled, settled);
+        car->settling = trial->end ? NULL : trial;
+        car->settled = speed;
+        if (settled->rows >= LONG_ENOUGH || trial->end || tries > 0)
+            return trial;
+        settled->rows = 0;
+    }
+}
+
 bool car_keeps(TestCar *car, double speed, const char **why)
 {
     const Powertrain *powertrain = car->model->powertrain;
@@ -311,11 +329,14 @@ bool car_keeps(TestCar *car, double speed, const char **why)
         car->settled = speed;
         return true;
     }
-    const Trial *trial = trial_run(car, "settling", car_scene(car, settling, speed, true, NULL), is_settled, &settled);
+    const Trial *trial = settle(car, speed, &settled);
     car->reached = trial->row[trial->rows - 1][TRIAL_SPEED];
-    if (!is_straight(car, trial, speed, why))
-        return false;
-    if (settled.rows < LONG_ENOUGH) {
+    const bool straight = is_straight(car, trial, speed, why);
+    if (!straight || settled.rows < LONG_ENOUGH) {
+        car->settling = NULL;
+        car->settled = 0;
+        if (!straight)
+            return false;
         car->remedy =
             car->reached > 0.1 * speed
                 ? pool_print(car->pool, "choose a speed that it keeps: speed=%.3g", 0.9 * car->reached)

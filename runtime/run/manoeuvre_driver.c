@@ -14,8 +14,8 @@
 #include <math.h>
 #include <string.h>
 
-/* s between looks; s that a movement takes, at least the period. Scenes of manoeuvres state both. */
-static const double period = 0.02, reach = 0.1;
+/* Scenes of manoeuvres state both. */
+const double driver_period = 0.02, driver_reach = 0.1;
 /* Previews that are tried, s, by equal factors; the best of them is refined to this share of itself. */
 static const double nearest = 0.05, farthest = 8, fine = 1e-5;
 enum { TRIED = 60 };
@@ -25,7 +25,7 @@ static const double gains[] = {0.125, 0.25, 0.5, 1, 2, 4, 8};
 static const double same = 1e-9;
 static const double shortest = 1.5; /* m that he looks ahead at least, where that is not more than at his speed */
 
-enum { MOVE = 8, KEPT = 4 }; /* derivatives of a movement; those that go on when another one replaces it */
+enum { MOVE = DRIVER_MOVE, KEPT = DRIVER_KEPT };
 
 /* Small motions from look to look: of the vehicle [n], the steering and its derivatives [KEPT], the curvature that the
  * driver has learnt. */
@@ -78,13 +78,11 @@ static int place_of(const int *kept, int n, int number)
     return -1;
 }
 
-/* The polynomial from a movement's values and three derivatives, and its end, to its derivatives [MOVE] when it
- * begins: movement_from() by unit values. */
-static void derivatives_from(const double now[KEPT], double end, double out[MOVE])
+void driver_movement(const double now[KEPT], double end, double out[MOVE])
 {
     Movement movement = movement_rest(0);
     double factorial = 1;
-    movement_from(&movement, 0, now, end, reach);
+    movement_from(&movement, 0, now, end, driver_reach);
     for (int k = 0; k < MOVE; ++k) {
         factorial *= k > 1 ? k : 1;
         out[k] = factorial * movement.c[k];
@@ -102,14 +100,14 @@ static void set_map(Loop *loop, double ahead)
     for (size_t k = 0; k < KEPT; ++k) {
         double now[KEPT] = {0};
         now[k] = 1;
-        derivatives_from(now, 0, out);
+        driver_movement(now, 0, out);
         for (size_t i = 0; i < MOVE; ++i)
             gsl_matrix_set(loop->look, n + i, n + k, out[i]);
     }
     /* the curvature of the circle through the point ahead, by the place aside and the heading */
     const double by_y = ahead > 0 ? -2 / fmax(ahead * ahead, 1) : 0, by_yaw = by_y * ahead;
     const double by_curvature = loop->gain * loop->steering_by_angle * loop->wheelbase;
-    derivatives_from((double[KEPT]){0}, by_curvature, out);
+    driver_movement((double[KEPT]){0}, by_curvature, out);
     for (size_t i = 0; i < MOVE; ++i) {
         gsl_matrix_set(loop->look, n + i, (size_t)loop->y, out[i] * by_y);
         gsl_matrix_set(loop->look, n + i, (size_t)loop->yaw, out[i] * by_yaw);
@@ -121,7 +119,7 @@ static void set_map(Loop *loop, double ahead)
     gsl_blas_dgemm(CblasNoTrans, CblasNoTrans, 1, &flow.matrix, loop->look, 0, &top.matrix);
     for (size_t j = 0; j <= learnt; ++j)
         gsl_matrix_set(loop->map, learnt, j, 0);
-    const double learns = ahead > 0 ? loop->adapt * period : 0;
+    const double learns = ahead > 0 ? loop->adapt * driver_period : 0;
     gsl_matrix_set(loop->map, learnt, learnt, learns > 0 ? 1 : 0);
     gsl_matrix_set(loop->map, learnt, (size_t)loop->y, learns * by_y);
     gsl_matrix_set(loop->map, learnt, (size_t)loop->yaw, learns * by_yaw);
@@ -154,7 +152,7 @@ static double decay_of(Loop *loop, double preview)
         if (!is_not_his(loop, value))
             largest = fmax(largest, gsl_complex_abs(value));
     }
-    return -log(largest) / period;
+    return -log(largest) / driver_period;
 }
 
 static Loop *loop_open(const TestCar *car, const PathDriver *driver)
@@ -181,12 +179,12 @@ static Loop *loop_open(const TestCar *car, const PathDriver *driver)
     gsl_matrix *A = gsl_matrix_calloc(n + MOVE, n + MOVE);
     for (size_t i = 0; i < n; ++i) {
         for (size_t j = 0; j < n; ++j)
-            gsl_matrix_set(A, i, j, period * path.A[kept[i] * path.n + kept[j]]);
+            gsl_matrix_set(A, i, j, driver_period * path.A[kept[i] * path.n + kept[j]]);
         for (size_t k = 0; k < SHEET_STEERING; ++k)
-            gsl_matrix_set(A, i, n + k, period * path.B[(int)k * path.n + kept[i]]);
+            gsl_matrix_set(A, i, n + k, driver_period * path.B[(int)k * path.n + kept[i]]);
     }
     for (size_t k = 0; k + 1 < MOVE; ++k)
-        gsl_matrix_set(A, n + k, n + k + 1, period);
+        gsl_matrix_set(A, n + k, n + k + 1, driver_period);
     loop->flow = gsl_matrix_alloc(n + MOVE, n + MOVE);
     gsl_linalg_exponential_ss(A, loop->flow, GSL_PREC_DOUBLE);
     gsl_matrix_free(A);
@@ -314,9 +312,10 @@ const char *manoeuvre_driver_text(const Manoeuvre *m, const PathDriver *driver, 
                       "driver:\n  period: %g\n  reach: %g\n%s  steering:\n    path: %s\n    input: %s\n"
                       "    per_angle: %.17g\n    wheelbase: %.17g\n    limit: %.17g\n    preview: %.9g\n"
                       "    shortest: %.9g\n    adapt: %g\n",
-                      period, reach, pedals, path, car->model->input[car->steering].name, driver->gain / car->angle,
-                      car->sheet.wheelbase, 0.999 * fmin(-car->range[0], car->range[1]) / fabs(car->angle),
-                      driver->preview, fmin(shortest, driver->preview * driver->speed), driver->adapt);
+                      driver_period, driver_reach, pedals, path, car->model->input[car->steering].name,
+                      driver->gain / car->angle, car->sheet.wheelbase,
+                      0.999 * fmin(-car->range[0], car->range[1]) / fabs(car->angle), driver->preview,
+                      fmin(shortest, driver->preview * driver->speed), driver->adapt);
 }
 
 void manoeuvre_driver_rows(Manoeuvre *m, const PathDriver *driver, const char *prefix)

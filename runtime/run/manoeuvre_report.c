@@ -290,6 +290,7 @@ static Manoeuvre drive(Pool *pool, const Model *model, const ManoeuvreKind *kind
     m.result = pool_alloc(pool, sizeof *m.result);
     *m.result = (Sheet){.pool = pool, .model = model};
     kind->run(&m);
+    manoeuvre_pedal_rows(&m);
     if (m.car->sheet.kc->units)
         sheet_note(m.result, m.car->sheet.kc->units);
     const double *aside = m.car->aside;

@@ -215,7 +215,7 @@ static const Trial *drive(Manoeuvre *m, const char *name, double speed, int clas
     Text more = {.pool = m->pool};
     text_print(&more, "road: {type: iso8608, class: %c, length: %.9g, seed: %.0f, start: %.9g, track: %.9g}\n",
                'A' + class - 1, ceil(speed * (duration + 2) + 20), seed, 10.0, track_of(&car->sheet, &between));
-    const char *pedals = pool_print(m->pool, "  speed: {target: %.17g, gain: 3, integral: 1}\n", speed);
+    const char *pedals = car_pedals(car, pool_print(m->pool, "%.17g", speed));
     if (driver) /* which keeps it between its tracks */
         text_print(&more, "%s",
                    manoeuvre_driver_text(

@@ -30,7 +30,7 @@ static const Trial *drive(Manoeuvre *m, const PathDriver *driver, double ay, con
     text_print(&path, "]}");
     const char *pedals = "";
     if (car->accelerator >= 0 && car->brake >= 0)
-        pedals = pool_print(m->pool, "  speed: {target: %.17g, gain: 3, integral: 1}\n", speed);
+        pedals = car_pedals(car, pool_print(m->pool, "%.17g", speed));
     return trial_run(
         car, name,
         car_scene(car, begin + change + after, speed, false, manoeuvre_driver_text(m, driver, pedals, path.s)), NULL,
