@@ -10,9 +10,11 @@
 static const double before = 12;                                         /* m from the start to the first lane */
 static const double begin[] = {10, 8, 6, 13}, fastest = 60, close = 0.1; /* m/s; begin: tried until one does */
 /* What the driver tries, one after the other: how far he looks ahead, by the preview found for him; m within a lane
- * where his line leaves it; and then all of it again steering as for a vehicle without slip, gain 1. */
-enum { LOOKS = 4, TURNS = 3, GAINS = 2, WAYS = LOOKS * TURNS * GAINS };
+ * where his line leaves it; and then all of it again steering as for a vehicle without slip, gain 1. Last with that
+ * gain previews, s, that serve many cars: near the limit of grip the linear model does not always know best. */
+enum { LOOKS = 4, TURNS = 3, GAINS = 2, FOUND = LOOKS * TURNS * GAINS, USUAL = 4, WAYS = FOUND + USUAL * TURNS };
 static const double looks[LOOKS] = {1, 2 / 3.0, 4 / 3.0, 5 / 3.0}, turns[TURNS] = {1.5, 0, 3};
+static const double usual[USUAL] = {0.45, 0.3, 0.6, 0.75};
 
 enum { LANES = 3 };
 
@@ -83,7 +85,7 @@ static const char *course_text(const Manoeuvre *m, const Course *c, const PathDr
     Text text = {.pool = m->pool};
     const char *pedals = "";
     if (keeps > 0 && car->accelerator >= 0 && car->brake >= 0)
-        pedals = pool_print(m->pool, "  speed: {target: %.17g, gain: 3, integral: 1}\n", keeps);
+        pedals = car_pedals(m->car, pool_print(m->pool, "%.17g", keeps));
     text_print(&text, "{points: [");
     for (double x = -15; x <= c->lane[LANES - 1].to + 90; x += x < c->lane[LANES - 1].to + 9 ? 1.5 : 10)
         text_print(&text, "%s[%g, %.9g]", x > -15 ? ", " : "", x, line(c, turn, x));
@@ -124,6 +126,26 @@ static double entry(const Course *c, const Trial *trial)
     return trial_at(trial, TRIAL_SPEED, trial_passes(trial, TRIAL_X, 0, c->lane[0].from, 1));
 }
 
+/* m within a lane where the line of a way leaves it. */
+static double turn_of(int way)
+{
+    return way < FOUND ? turns[way / LOOKS % TURNS] : turns[(way - FOUND) / USUAL];
+}
+
+/* The driver that was found, as he tries it in a way. False: errors would not die out. */
+static bool take_way(int way, PathDriver *driver)
+{
+    if (way >= FOUND) {
+        driver->preview = usual[(way - FOUND) % USUAL];
+        driver->gain = 1;
+        return true;
+    }
+    driver->preview *= looks[way % LOOKS];
+    if (way / (LOOKS * TURNS))
+        driver->gain = 1;
+    return driver->preview >= driver->stable[0] && driver->preview <= driver->stable[1];
+}
+
 /* A run at a speed that touches no cone; NULL: there is none, *why. */
 static const Trial *drive(Manoeuvre *m, Course *c, double speed, const char **why)
 {
@@ -131,22 +153,18 @@ static const Trial *drive(Manoeuvre *m, Course *c, double speed, const char **wh
     if (!car_keeps(car, speed, why))
         return NULL;
     PathDriver driver;
-    if (!manoeuvre_find_driver(m, speed, 0, &driver, why))
-        return NULL;
+    const char *none;
+    const bool found = manoeuvre_find_driver(m, speed, 0, &driver, &none);
     const bool drives = m->value[1] < 1.5; /* part 1: the speed is kept */
     for (int k = 0; k < WAYS; ++k) {
         const int i = c->tried[k];
         const double duration = (c->lane[LANES - 1].to + 20) / speed * 2;
         PathDriver tries = driver;
-        tries.preview *= looks[i % LOOKS];
-        if (i / (LOOKS * TURNS))
-            tries.gain = 1;
-        if (tries.preview < driver.stable[0] || tries.preview > driver.stable[1])
+        if ((i < FOUND && !found) || !take_way(i, &tries))
             continue;
         const Trial *trial =
             trial_run(car, pool_print(m->pool, "at %.4g m/s", speed),
-                      car_scene(car, duration, speed, false,
-                                course_text(m, c, &tries, turns[i / LOOKS % TURNS], drives ? speed : 0)),
+                      car_scene(car, duration, speed, false, course_text(m, c, &tries, turn_of(i), drives ? speed : 0)),
                       is_through, c);
         const double *last = trial->row[trial->rows - 1];
         const int lane = touched(c, last);
@@ -164,6 +182,8 @@ static const Trial *drive(Manoeuvre *m, Course *c, double speed, const char **wh
             return trial;
         }
     }
+    if (!found)
+        *why = none;
     return NULL;
 }
 
@@ -203,8 +223,9 @@ void manoeuvre_lane_change(Manoeuvre *m)
     sheet_add(s, NULL, "ay_left", "Largest lateral acceleration to the left", "m/s^2", most[TRIAL_AY]);
     sheet_add(s, NULL, "ay_right", "To the right", "m/s^2", -least[TRIAL_AY]);
     sheet_add_way(s, NULL, "width", "Width of the vehicle", 2 * c.half);
-    manoeuvre_driver_rows(m, &c.driver, "");
-    sheet_add(s, NULL, "driver.used", "Preview that led through", "s", c.used);
+    if (c.driver.preview > 0)
+        manoeuvre_driver_rows(m, &c.driver, "");
+    sheet_add(s, c.driver.preview > 0 ? NULL : "Driver", "driver.used", "Preview that led through", "s", c.used);
     sheet_add(s, NULL, "driver.used_gain", "Gain that led through", "1", c.used_gain);
     sheet_note(s, pool_print(m->pool, "at %.4g m/s: %s", high, limit ? limit : "not tried"));
     static const Channel over[] = {TRIAL_ANGLE, TRIAL_Y, TRIAL_AY, TRIAL_YAW_RATE, TRIAL_ROLL, TRIAL_SPEED};

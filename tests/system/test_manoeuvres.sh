@@ -76,7 +76,7 @@ gradient() { awk -F, '$1 ~ /understeer/ {k = 0.02 / 9.80665; n += 1; bad += ($2 
 check 'a kart understeers as its tires say' gradient
 run --manoeuvre step-steer "$work/kart.veh" speed=15 ay=1
 check 'it is driven' exits 0
-# a driver with 0.45 s of preview for all vehicles, and two thirds, four and five thirds of it, got them through at these speeds
+# with gain 1 and previews of 0.45, 0.3, 0.6 and 0.75 s alone, which are tried last, they get through at these speeds (a hatchback at 16.68, as with all)
 lanes() {
     run --manoeuvre lane-change "$1" -q -o "$work/lanes.csv"
     check "lane change: $1" exits 0
