@@ -276,6 +276,7 @@ typedef struct PathDriver {
     double preview;      /* s that he looks ahead */
     double decay;        /* 1/s with which the slowest motion that he moves dies out; not above 0: it grows */
     double stable[2];    /* s: with previews between these it decays */
+    double nearest;      /* m that he looks ahead at least; 0: 1.5 m, or less where that is more than at his speed */
 } PathDriver;
 
 /* The preview with which errors die out most quickly where he does not learn; adapt: 1/s with which he is to. False:

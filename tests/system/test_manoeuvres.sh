@@ -202,6 +202,12 @@ check 'nobody steers where the left side is slippery' prints 'the vehicle spins,
 check 'and no stopping distance' sh -c "! grep -q 'Stopping' '$work/out'"
 run --manoeuvre turn-braking "$models/hmmwv_vehicle.veh" speed=16
 check 'the brake in a turn' prints 'left.brake_0.5: the vehicle spins, by'
+run --manoeuvre turn-braking "$models/hmmwv_vehicle.veh" speed=16 ay=3 brake=0.3 driver=1 --report "$work/page.html" --trace "$work/trace.csv" -o "$work/table.csv"
+check 'a driver keeps the circle' exits 0
+check 'which is told' sh -c "grep -q '^left.brake_0.3.off,0.[0-3]' '$work/table.csv' && grep -q '^right.brake_0.3.steer_out,' '$work/table.csv'"
+check 'no number is none' sh -c "! grep -qiE '[^a-z](nan|inf)[^a-z]' '$work/table.csv' '$work/trace.csv' '$work/page.html'"
+run --manoeuvre lift-off "$linear" speed=20 ay=2 driver=0.5
+check 'half a driver' says 'is no whole number from'
 run --manoeuvre elasticity "$models/hmmwv_vehicle.veh"
 check 'a speed that it does not keep' exits 1
 run --manoeuvre elasticity "$models/hmmwv_vehicle.veh" low=10 high=40

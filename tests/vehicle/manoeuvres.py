@@ -313,6 +313,48 @@ for words, levels in ((["lift-off", f"speed={V}", "ay=1"], [None]), (["turn-brak
                 wanted = 0.95 * 4 * 2000 * level / (0.313 - deflection) / (m + 4 * spin_inertia / radius / (0.313 - deflection))
                 check(f"{name}: its size", value[f"{name}.deceleration"], wanted, 0.03)
 
+# a driver keeps the circle: rows by the time histories, and his angle by axles whose slip angles are force over load in balance,
+# along with what the deceleration shifts and what it takes to turn more slowly
+value, trials = drive("turn-braking", f"speed={V}", "ay=1", "brake=0.1", "driver=1")
+for side, sign in (("left", 1), ("right", -1)):
+    for level in (0.025, 0.05, 0.075, 0.1):
+        name = f"{side}.brake_{level:g}"
+        trace = trials[name]
+        at = lambda column, t: np.interp(t, trace["time"], trace[column])
+        on = (trace["time"] >= 8) & (trace["time"] <= 10)
+        M = np.array([2 * trace["x"][on], 2 * trace["y"][on], np.ones(on.sum())]).T
+        x0, y0, rest = np.linalg.lstsq(M, trace["x"][on] ** 2 + trace["y"][on] ** 2, rcond=None)[0]
+        R = np.sqrt(rest + x0 * x0 + y0 * y0)
+        check(f"{name}: radius", value[f"{name}.radius"], R, 0.01)
+        from_centre = lambda t: np.hypot(at("x", t) - x0, at("y", t) - y0)
+        for after in (0.5, 1, 2):
+            check(f"{name}: steered after {after} s", value[f"{name}.at_{after:g}.steer_change"], sign * (at("steer_angle", 10 + after) - at("steer_angle", 10)), 1e-9, 1e-3)
+            check(f"{name}: inwards after {after} s", value[f"{name}.at_{after:g}.inwards"], from_centre(10) - from_centre(10 + after), 0.01, 1)
+        late = trace["time"] >= 10
+        change = sign * (trace["steer_angle"][late] - at("steer_angle", 10))
+        check(f"{name}: into the turn", value[f"{name}.steer_in"], max(change.max(), 0), 1e-9, 1e-3)
+        check(f"{name}: out of it", value[f"{name}.steer_out"], max(-change.min(), 0), 1e-9, 1e-3)
+        off = np.abs(np.hypot(trace["x"][late] - x0, trace["y"][late] - y0) - from_centre(10)).max()
+        check(f"{name}: off the circle", value[f"{name}.off"], off, 0.01, 1)
+        check(f"{name}: he keeps it", off, 0, 0.1, 1)
+
+        def angle(t):
+            """L times the curvature and the difference of the slip angles, by the speed, the accelerations and the brake of then."""
+            ax, along = at("ax", t), 2 * (2000 * at("brake", t) + spin_inertia * at("ax", t) / radius) / (0.313 - deflection)
+            turning = np.interp(t, trace["time"], np.gradient(trace["yaw_rate"], trace["time"]))
+            across = (np.array([b, a]) * m * at("ay", t) + np.array([1, -1]) * sheet["inertia_zz"] * turning) / L
+            carried = load - np.array([1, -1]) * m * h * ax / L
+            # tires have one slip for both directions, and a stiffness between that along and that across (TIRES.md)
+            force = np.hypot(along, across)
+            stiffness = np.hypot(20 * along, np.array([10, 12.5]) * across) / force * carried
+            slips = across / stiffness
+            return L * at("yaw_rate", t) / at("speed", t) + slips[0] - slips[1]
+
+        # the rest is that loads shift after the deceleration, as the body pitches, and slips after forces
+        for after, near in ((0.5, 4e-4), (2, 3e-4), (3, 2.2e-4)):
+            change = sign * (at("steer_angle", 10 + after) - at("steer_angle", 10))
+            check(f"{name}: his angle after {after} s", change, sign * (angle(10 + after) - angle(10)), near, 1)
+
 # ---- rollover: wheels without load, and when the fishhook steers back -----------------------------------------------------------------
 
 for kind in ("j-turn", "fishhook"):
