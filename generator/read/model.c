@@ -169,9 +169,15 @@ const Model *model_read_set(Pool *pool, const Model *earlier, const FileNumber *
     return read_model(pool, settings_put(pool, known_included(pool, earlier->source), setting, count));
 }
 
-const Model *model_read_fixed(Pool *pool, const Model *earlier, const double *parameter)
+bool model_has_number(Pool *pool, const Model *model, const char *name)
 {
-    const Item *file = known_included(pool, earlier->source);
+    return setting_known(pool, known_included(pool, model->source), name);
+}
+
+const Model *model_read_fixed(Pool *pool, const Model *earlier, const FileNumber *setting, int count,
+                              const double *parameter)
+{
+    const Item *file = settings_put(pool, known_included(pool, earlier->source), setting, count);
     Model *model = read_model(pool, parameters_put(pool, file, earlier, parameter));
     model->tuning = NULL;
     for (int i = 0; i < model->parameters; ++i)

@@ -29,8 +29,12 @@ typedef struct FileNumber {
 /* The same with other numbers in place of those of the file, whose mirror images follow. A name that it does not have
  * ends in diag_fail. */
 const Model *model_read_set(Pool *pool, const Model *earlier, const FileNumber *setting, int count);
-/* The same with values of the tunable parameters, by which geometric ones become numbers: a model without a tuning. */
-const Model *model_read_fixed(Pool *pool, const Model *earlier, const double *parameter);
+/* The same, and then with values of the tunable parameters, mirror images among them: parameter [parameters of the
+ * earlier model, by their index], SI. Geometric ones become numbers: a model without a tuning. */
+const Model *model_read_fixed(Pool *pool, const Model *earlier, const FileNumber *setting, int count,
+                              const double *parameter);
+/* True: the model's file has a number of this name. */
+bool model_has_number(Pool *pool, const Model *model, const char *name);
 /* A copy of the model with hidden outputs of each wheel: of type wheel, and with a tire also tire and contact, unless
  * it has them. */
 const Model *model_watch_wheels(Pool *pool, const Model *model);

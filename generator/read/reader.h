@@ -195,6 +195,8 @@ const Item *file_included(Pool *pool, const char *path);
 const Item *text_included(Pool *pool, const char *path, const char *text, size_t size);
 /* The same from the bytes of an earlier reading of it and of the files that it includes. */
 const Item *known_included(Pool *pool, const Source *known);
+/* set.c: true if settings_put() takes this name. */
+bool setting_known(Pool *pool, const Item *file, const char *name);
 /* set.c: a file with other numbers in place of its own. */
 const Item *settings_put(Pool *pool, const Item *file, const struct FileNumber *setting, int count);
 /* The same for the values of all tunable parameters of the model that was read from it, mirror images too. */

@@ -93,6 +93,13 @@ static _Noreturn void refuse(Pool *pool, const Item *file, const FileNumber *set
               "the model's file has no parameter and no coordinate of a point '%s'", setting->name);
 }
 
+bool setting_known(Pool *pool, const Item *file, const char *name)
+{
+    Item *own = copy(pool, file);
+    const FileNumber setting = {name, 0};
+    return set_parameter(pool, own, &setting) || set_point(pool, own, &setting);
+}
+
 const Item *settings_put(Pool *pool, const Item *file, const FileNumber *setting, int count)
 {
     Item *own = copy(pool, file);

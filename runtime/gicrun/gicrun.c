@@ -273,8 +273,8 @@ static Asked read_command_line(int count, char **word)
         usage_fail("gicrun", "--report goes with --kc, --manoeuvre or --vary", NULL);
     if (study->varied && !asked.kinematics && !study->manoeuvre && !asked.sheet)
         usage_fail("gicrun", "--vary goes with --kc, --sheet or --manoeuvre; scenes are varied by gicsweep", NULL);
-    if (study->varied && (asked.loads || asked.joints || study->compare || study->trace))
-        usage_fail("gicrun", "--vary goes without --loads, --joints, --compare and --trace", NULL);
+    if (study->varied && study->trace)
+        usage_fail("gicrun", "--vary goes without --trace", NULL);
     if (study->varied && study->results && path_ends(study->results, ".html"))
         usage_fail("gicrun", "with --vary a page is made by --report, not by -o", study->results);
     if (study->trace && !study->manoeuvre)
@@ -283,9 +283,9 @@ static Asked read_command_line(int count, char **word)
         usage_fail("gicrun", "--compare goes with --kc, --sheet or --manoeuvre", NULL);
     if (asked.loads && asked.joints)
         usage_fail("gicrun", "one of --loads and --joints, please", NULL);
-    if (asked.joints && study->compare && asked.report)
+    if (asked.joints && study->compare && asked.report && !study->varied)
         usage_fail("gicrun", "--joints --compare is at the position of set-up: it goes without --report", NULL);
-    if (asked.loads && (asked.report || study->travel > 0))
+    if (asked.loads && ((asked.report && !study->varied) || study->travel > 0))
         usage_fail("gicrun", "--loads is at the position of set-up: it goes without --travel and --report", NULL);
     if (asked.report && !path_ends(asked.report, ".html"))
         usage_fail("gicrun", "the page must end in .html, unlike", asked.report);

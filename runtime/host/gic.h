@@ -280,8 +280,8 @@ typedef struct gicl_study {
     const char *joystick, *axes; /* the same: a device that drives, and words name=axis0:low:high, between commas */
     int port;       /* the same: of UDP on the loopback interface; 0: one that is free, which a note tells */
     double seconds; /* the same; 0: until a signal asks to stop, which a listener with `signals` must have left to it */
-    const char *const *vary; /* [varied] of "kc", "sheet" and "manoeuvre": words name=low:high:count, without "loads",
-                              * "joints", "compare" and "trace" */
+    const char *const *vary; /* [varied] of "kc", "sheet" and "manoeuvre": words name=low:high:count, without
+                              * "trace" */
     int varied;
     int quiet; /* 1: neither progress nor notes */
 } gicl_study;

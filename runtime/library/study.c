@@ -130,8 +130,8 @@ static int check_words(const gicl_study *study, Kind kind, bool signals, gicl_me
     if (study->varied < 0 || (study->varied && (!(varying & IN(kind)) || !study->vary)))
         return call_wrong(said, NULL,
                           "'varied' is the number of words in 'vary', which go with kc, sheet and manoeuvre");
-    if (study->varied && (study->loads || study->joints || study->compare || study->trace))
-        return call_wrong(said, "leave them out", "'vary' goes without 'loads', 'joints', 'compare' and 'trace'");
+    if (study->varied && study->trace)
+        return call_wrong(said, "leave it NULL", "'vary' goes without 'trace'");
     if (kind == SHEET && study->page && !study->varied)
         return call_wrong(said, "'results' that end in .html are one", "'page' of sheet goes with 'vary'");
     if (study->keys && study->at)
@@ -334,6 +334,15 @@ static void make_pool(void *context)
     ((Writing *)context)->pool = pool_new();
 }
 
+static StudyKind study_kind(const Writing *w)
+{
+    return w->kind == SHEET       ? STUDY_SHEET
+           : w->kind == MANOEUVRE ? STUDY_MANOEUVRE
+           : w->study->loads      ? STUDY_LOADS
+           : w->study->joints     ? STUDY_JOINTS
+                                  : STUDY_KC;
+}
+
 static void write_study(void *context)
 {
     Writing *w = context;
@@ -349,7 +358,7 @@ static void write_study(void *context)
     const Scene *scene =
         request.scene ? scene_read(pool, request.scene, model, open->integrator, open->tolerance) : NULL;
     if (scene && model->tuning && !request.varied && (w->kind == KC || w->kind == SHEET))
-        model = model_read_fixed(pool, model, scene->parameter);
+        model = model_read_fixed(pool, model, NULL, 0, scene->parameter);
     if (request.with)
         request.other = other_results(pool, request.with);
     if (w->kind != RUN && w->kind != EVAL && w->kind != EQUILIBRIUM && w->kind != MODES && scene && scene->automatic)
@@ -358,7 +367,7 @@ static void write_study(void *context)
     if (request.picture)
         plot_check(pool);
     if (request.varied)
-        study_sweep(pool, model, w->kind == KC ? STUDY_KC : w->kind == SHEET ? STUDY_SHEET : STUDY_MANOEUVRE, &request);
+        study_sweep(pool, model, study_kind(w), &request);
     else if (w->kind == MANOEUVRE)
         manoeuvre_report(pool, model, &request);
     else if (w->kind == KC)

@@ -332,6 +332,8 @@ typedef struct KcGive {
 
 /* give: [wheels]. opposed: the other way on the right. Returns NULL, or why there is none. */
 const char *kc_compliance(const Kc *kc, const KcAxle *axle, KcLoad load, bool opposed, KcGive *give);
+/* kc_report.c: the axles; ends in diag_fail where none of them has a compliance. */
+const Kc *kc_loads_open(Pool *pool, const Model *model, const Scene *scene, const Request *request);
 /* All loads of all axles as CSV; those of an axle for people. */
 void kc_loads_csv(Pool *pool, const Kc *kc, const char *path);
 void kc_loads_print(Text *out, const Kc *kc, int axle);

@@ -48,6 +48,19 @@ const char *kc_joints_at(const KcJoints *joints, const KcAxle *axle, const doubl
 bool kc_joint_seen(const KcJoints *joints, const KcCarried *carried, int j);
 /* The name of joint j, or of the axle's steering. */
 const char *kc_joint_name(const KcJoints *joints, const KcAxle *axle, int j);
+/* kc_joints_report.c: of all axles, in the positions of a study; those at set-up alone unless request->report or
+ * request->results asks for more. Ends in diag_fail where nothing is known of any axle. */
+typedef struct KcCarrying KcCarrying;
+const KcCarrying *kc_carrying(Pool *pool, const Model *model, const Scene *scene, const Request *request,
+                              const KcStudy *study);
+/* At set-up, as numbers with names. */
+struct Sheet kc_carrying_sheet(const KcCarrying *carrying, const Model *model);
+/* What joint j carries in all rows of a motion, y [rows], N or N m, by the case `drawn` of those that pages draw; NAN
+ * where no load reaches it. Returns its name, with the case's title and the unit; NULL: there is no such joint or
+ * motion. */
+enum { KC_CASES_DRAWN = 6 };
+const char *kc_carrying_curve(const KcCarrying *carrying, int axle, KcMotion motion, int drawn, int j, double *y,
+                              const char **title, const char **unit);
 /* --kc --joints: a table at set-up, CSV of all positions, a page of curves; or two models beside each other at set-up.
  */
 void kc_joints_report(Pool *pool, const Model *model, const Scene *scene, const Request *request);

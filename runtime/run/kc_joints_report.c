@@ -15,14 +15,15 @@
 #include <math.h>
 #include <string.h>
 
-typedef struct Carrying {
+struct KcCarrying {
     Pool *pool;
     const KcStudy *study;
     const KcJoints *joints;
     KcCarried *(*at)[KC_MOTIONS]; /* [axles] of [rows][KC_CASES][joints + 1]; NULL: no such motion */
     bool *seen;                   /* [axles][joints + 1] at the positions that are looked at */
     bool set_up_alone;            /* only the rows at set-up that tables show are looked at */
-} Carrying;
+};
+typedef KcCarrying Carrying;
 
 /* Cases that tables and pages show, and by how much of the load. The first DRAWN are those of pages. */
 static const struct {
@@ -37,7 +38,7 @@ static const struct {
              {KC_BY_LOADS + 2 * KC_VERTICAL + 1, "opp. vert.", 1000},
              {KC_BY_LOADS + 2 * KC_LONGITUDINAL + 1, "opp. long.", 1000},
              {KC_BY_LOADS + 2 * KC_ALIGNING + 1, "opp. align.", 100}};
-enum { SHOWN = sizeof shown / sizeof *shown, DRAWN = 6 };
+enum { SHOWN = sizeof shown / sizeof *shown, DRAWN = KC_CASES_DRAWN };
 
 static const KcCarried *carried_at(const Carrying *c, int axle, KcMotion motion, int row, int by, int j)
 {
@@ -98,7 +99,7 @@ static Carrying open_all(Pool *pool, const Model *model, const Scene *scene, con
                          const KcStudy *study)
 {
     Carrying c = {.pool = pool, .study = study};
-    c.set_up_alone = request->compare || (!request->results && !request->report);
+    c.set_up_alone = !request->report && (request->compare || request->varied || !request->results);
     KcMotion motion;
     int row;
     c.joints = kc_joints_open(pool, model, scene, request->solve, study->kc);
@@ -220,7 +221,7 @@ static const char *unit_of(const Carrying *c, const KcAxle *axle, int j, int by)
     return unit[turns][by < KC_BY_LOADS ? 0 : kc_case_load(by) == KC_ALIGNING ? 2 : 1];
 }
 
-static Sheet sheet_of(const Carrying *c, const Model *model)
+Sheet kc_carrying_sheet(const Carrying *c, const Model *model)
 {
     Sheet sheet = {.pool = c->pool, .model = model};
     for (int a = 0; a < c->study->kc->axles; ++a) {
@@ -243,10 +244,40 @@ static Sheet sheet_of(const Carrying *c, const Model *model)
                           pool_print(c->pool, "%s.%s.%s%s%s", axle->name, name, load, *opposed ? "." : "", opposed),
                           pool_print(c->pool, "%s: %s%s%s", name, load, *opposed ? ", " : "", opposed),
                           unit_of(c, axle, j, by), number_of(at));
+                if (by >= KC_BY_LOADS && kc_case_load(by) == KC_ALIGNING) { /* N by N m, which is no curvature */
+                    sheet.row[sheet.rows - 1].shown = sheet.row[sheet.rows - 1].unit;
+                    sheet.row[sheet.rows - 1].scale = 1;
+                }
                 section = NULL;
             }
     }
     return sheet;
+}
+
+/* ---- curves ---------------------------------------------------------------------------------------------- */
+
+const KcCarrying *kc_carrying(Pool *pool, const Model *model, const Scene *scene, const Request *request,
+                              const KcStudy *study)
+{
+    Carrying *c = pool_alloc(pool, sizeof *c);
+    *c = open_all(pool, model, scene, request, study);
+    return c;
+}
+
+const char *kc_carrying_curve(const Carrying *c, int axle, KcMotion motion, int drawn, int j, double *y,
+                              const char **title, const char **unit)
+{
+    const KcAxle *of = &c->study->kc->axle[axle];
+    if (c->set_up_alone || !c->at[axle][motion] || j > c->joints->joints)
+        return NULL;
+    const bool turns =
+        j == c->joints->joints && of->steer >= 0 && c->study->kc->model->coordinate[of->steer].type == COORDINATE_ANGLE;
+    for (int r = 0; r < c->study->curve[axle][motion]->rows; ++r)
+        y[r] = seen_of(c, axle)[j] ? number_of(carried_at(c, axle, motion, r, shown[drawn].by, j)) * shown[drawn].size
+                                   : NAN;
+    *title = shown[drawn].title;
+    *unit = turns ? "N m" : "N";
+    return kc_joint_name(c->joints, of, j);
 }
 
 /* ---- the page ------------------------------------------------------------------------------------------- */
@@ -328,8 +359,8 @@ void kc_joints_report(Pool *pool, const Model *model, const Scene *scene, const 
         const Model *model_of_other = sheet_other(pool, model, request->compare, &name);
         const KcStudy study_of_other = kc_study(pool, model_of_other, NULL, request);
         const Carrying other = open_all(pool, model_of_other, NULL, request, &study_of_other);
-        Sheet sheet = sheet_of(&c, model);
-        const Sheet beside = sheet_of(&other, model_of_other);
+        Sheet sheet = kc_carrying_sheet(&c, model);
+        const Sheet beside = kc_carrying_sheet(&other, model_of_other);
         sheet_beside(&sheet, &beside, name, request->results, ": joints, models/KC.md defines it");
         return;
     }

@@ -233,8 +233,7 @@ static void note_units(Pool *pool, const KcStudy *study, const Request *request)
                              study->kc->units));
 }
 
-/* --loads: compliance alone. */
-static void report_loads(Pool *pool, const Model *model, const Scene *scene, const Request *request)
+const Kc *kc_loads_open(Pool *pool, const Model *model, const Scene *scene, const Request *request)
 {
     const Kc *kc = kc_open(pool, model, scene, request->solve, request->axle);
     const char *why = NULL, *first = NULL;
@@ -248,6 +247,13 @@ static void report_loads(Pool *pool, const Model *model, const Scene *scene, con
     if (!gives)
         diag_fail((Place){model->source, 0, 0}, "write what holds it as springs between points or along coordinates",
                   "no axle of model '%s' has a compliance: %s: %s", model->name, kc->axle[0].name, first);
+    return kc;
+}
+
+/* --loads: compliance alone. */
+static void report_loads(Pool *pool, const Model *model, const Scene *scene, const Request *request)
+{
+    const Kc *kc = kc_loads_open(pool, model, scene, request);
     if (request->compare) {
         const char *name;
         const Model *model_of_other = sheet_other(pool, model, request->compare, &name);

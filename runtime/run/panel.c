@@ -78,8 +78,8 @@ static void curve(Text *out, const Panel *panel, int c, const double x[2], const
         }
         text_print(out, "%s", open ? " " : "");
         if (!open)
-            text_print(out, "<polyline stroke=\"%s\"%s points=\"", panel_color(c),
-                       c == 1 ? " stroke-dasharray=\"6 3\"" : "");
+            text_print(out, "<polyline stroke=\"%s\"%s points=\"", panel_color(panel->pairs ? c / 2 : c),
+                       (panel->pairs ? c % 2 : c == 1) ? " stroke-dasharray=\"6 3\"" : "");
         open = true;
         text_print(out, "%.1f,%.1f", LEFT + (WIDTH - LEFT - RIGHT) * (panel->x[i] - x[0]) / (x[1] - x[0]),
                    TOP + (HEIGHT - TOP - BOTTOM) * (y[1] - value) / (y[1] - y[0]));

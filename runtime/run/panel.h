@@ -6,10 +6,13 @@
 
 #include "base/text.h"
 
+#include <stdbool.h>
+
 /* Curves over one abscissa, in the units that are shown. */
 typedef struct Panel {
     const char *title, *unit, *below;
     int rows, curves;
+    bool pairs; /* curves 2 k and 2 k + 1 have one color, and the second one is dashed; else curve 1 is */
     const double *x;
     double *y; /* [curves][rows]; what is not finite is left out */
 } Panel;

@@ -19,16 +19,11 @@ static const char *last_of(const char *path)
 
 const Model *sheet_set(Pool *pool, const Model *model, const Scene *scene)
 {
-    FileNumber *setting = pool_alloc(pool, ((size_t)model->parameters + 1) * sizeof *setting);
-    int settings = 0;
     bool differs = false;
     for (int i = 0; i < model->parameters; ++i)
-        if (model->parameter[i].tunable) {
-            const double value = scene->parameter[model->parameter[i].index];
-            differs = differs || value != model->parameter[i].value;
-            setting[settings++] = (FileNumber){model->parameter[i].name, value};
-        }
-    return differs ? model_read_set(pool, model, setting, settings) : model;
+        differs = differs || (model->parameter[i].tunable &&
+                              scene->parameter[model->parameter[i].index] != model->parameter[i].value);
+    return differs ? model_read_fixed(pool, model, NULL, 0, scene->parameter) : model;
 }
 
 const Model *sheet_other(Pool *pool, const Model *model, const char *file, const char **name)

@@ -633,7 +633,7 @@ static const Scene *scene_of(Pool *pool, const Item *root, const char *path, con
     if (doc_find(root, "parameters"))
         read_parameters(&reader, doc_find(root, "parameters"));
     if (model->tuning && rig_wanted(root))
-        reader.model = model = scene->fixed = model_read_fixed(pool, model, scene->parameter);
+        reader.model = model = scene->fixed = model_read_fixed(pool, model, NULL, 0, scene->parameter);
     memcpy(scene->position, model->body[BODY_BASE].position, sizeof scene->position);
     memcpy(scene->euler, model->body[BODY_BASE].euler, sizeof scene->euler);
     scene->value = pool_alloc(pool, sizeof(double) * (size_t)(model->coordinates + 1));

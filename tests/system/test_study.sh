@@ -31,9 +31,45 @@ run --kc "$models/formula_student.veh" --vary bar_front=0:50:2
 check 'a table' prints 'Roll rate'
 check 'without what does not change' sh -c "! grep -q Camber '$work/out'"
 run --manoeuvre step-steer "$linear" --vary ay=2:14:2 -o "$work/some.csv"
-check 'a run that fails' exits 0
-check 'is told' says 'no results with ay = 14: '
+check 'a run that fails' exits 1
+check 'is told' says '1 of 2 runs has no results, the first with ay = 14: '
 check 'and has empty cells' grep -qE '^1,14(,)+$' "$work/some.csv"
+check 'the other one is there' grep -qE '^0,2,[0-9]' "$work/some.csv"
+run --sheet "$models/formula_student.veh" --vary bar_front=-2000:-50:2 --vary bar_rear=-70:70:2 -q
+check 'no sheet at all' exits 1
+run --kc "$models/formula_student.veh" --vary bar_front=-50:50:3 --report "$work/page.html"
+check 'the page of a run that fails' exits 1
+check 'says why' grep -q 'No results: with bar_front = -50: stiffness of force' "$work/page.html"
+check 'and has a mark in the table' grep -q '<td class="n">failed</td><td class="n">[0-9]' "$work/page.html"
+run --kc "$models/formula_student.veh" --vary bar_front=-50:50:3
+check 'the table of a run that fails' exits 1
+check 'says why' prints 'No results: with bar_front = -50: stiffness of force'
+check 'and has the others' prints 'Roll rate .* failed  *[0-9]'
+run --kc "$models/formula_student.veh" --vary bar_front=-50:50:2 -q
+check 'one run with results' prints 'Camber, front_tire_l .* failed  *[0-9-]'
+check 'quiet: the error alone' sh -c "! grep -q note: '$work/err'"
+
+# compliance, joints, two vehicles, as tables and pages
+run --kc --loads --axle front "$models/formula_student.veh" --vary f_upper_out_l.z=0.27:0.29:3 --report "$work/page.html"
+check 'the page of compliance' grep -q '<figcaption>vertical: toe, front_tire_l, deg/kN' "$work/page.html"
+run --kc --joints --axle front "$models/formula_student.veh" --vary f_upper_out_l.z=0.27:0.29:3 --report "$work/page.html"
+check 'the page of joints' grep -q '<h2>front: Steering, by lateral</h2>' "$work/page.html"
+check 'a family has a curve a run' sh -c "sed -n '/front: Steering, by lateral/,/<.figure>/p' '$work/page.html' | grep -c '<polyline' | grep -qx 3"
+check 'no number is none' sh -c "! grep -qiE '[^a-z](nan|inf)[^a-z]' '$work/page.html'"
+run --kc --joints --axle front "$models/formula_student.veh" --vary f_upper_out_l.z=0.27:0.29:3
+check 'the table of joints' prints '1/m '
+run --kc --axle front "$models/hmmwv.veh" --vary upper_u_f_l.z=0.67:0.71:3 --compare "$models/formula_student.veh" --report "$work/page.html"
+check 'two vehicles' exits 0
+check 'the second one does not have that point' says "formula_student has no 'upper_u_f_l.z', which changes nothing of it"
+check 'both vehicles in a family' sh -c "sed -n '/front: Parallel travel/,/<.figure>/p' '$work/page.html' | grep -c '<polyline' | grep -qx 6"
+check 'three of them dashed' sh -c "sed -n '/front: Parallel travel/,/<.figure>/p' '$work/page.html' | grep -c dasharray | grep -qx 3"
+check 'differences are marked' grep -q '<td class="n differs">' "$work/page.html"
+run --kc --axle front "$models/hmmwv.veh" --vary upper_u_f_l.z=0.67:0.71:2 --compare "$models/hmmwv_full.veh"
+check 'the table of two' prints '  of hmmwv_full .*[0-9][*]'
+run --kc "$models/formula_student.veh" --vary bar_front=-50:50:2 --compare "$models/hatchback.veh" -o "$work/both.csv"
+check 'one of two fails' exits 1
+check 'it is named' says 'the first formula_student with bar_front = -50: '
+check 'the other one stays' sh -c "tail -n 2 '$work/both.csv' | head -n 1 | grep -qE '^0,-50,,[0-9-]'"
 run --manoeuvre step-steer "$linear" --vary ay=14:14.5:2 -o "$work/none.csv"
 check 'no run has results' exits 1
 check 'the reason' says 'no step of the steering ends in\|tips over'
@@ -47,7 +83,7 @@ check 'and what it follows' says "did you mean 'f_upper_out_l.z'"
 run --kc "$models/formula_student.veh" --vary f_upper_out_l.w=0.27:0.29:3
 check 'no such axis' exits 1
 for words in 'f_upper_out_l.z=1' 'x=1:2:0' 'bar_front=0:1' 'bar_front=0:1:2 --vary bar_front=0:1:2' 'bar_front=0:1:1000 --vary bar_rear=0:1:1000' \
-    'bar_front=0:1:2 --loads' "bar_front=0:1:2 --compare $models/hmmwv.veh" 'bar_front=0:1:2 -o page.html'; do
+    'bar_front=0:1:2 --loads --joints' 'bar_front=0:1:2 --trace x.csv' 'bar_front=0:1:2 -o page.html'; do
     # shellcheck disable=SC2086 # words
     run --kc "$models/formula_student.veh" --vary $words
     check "--vary $words" exits 2
@@ -62,4 +98,4 @@ check 'a key twice' says "'speed' is given twice"
 check 'a key twice, status' exits 2
 
 echo "$passed passed, $failed failed"
-[ "$failed" -eq 0 ] && [ "$passed" -ge 34 ]
+[ "$failed" -eq 0 ] && [ "$passed" -ge 62 ]

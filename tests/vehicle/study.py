@@ -61,6 +61,55 @@ for i, row in enumerate(grid):
     assert abs(float(bare(row)["front_tire_l.camber_rate"]) - float(bare(row)["front_tire_r.camber_rate"])) < 1e-12
 assert len(seen) == 3
 
+# compliance, and what joints carry
+for what in "--loads", "--joints":
+    grid = table("--kc", what, "--axle", "front", car, "--vary", "f_upper_out_l.z=0.27:0.29:3")
+    for i, row in enumerate(grid):
+        z = row["f_upper_out_l.z [m]"]
+        one = edited("formula_student.veh", "[0.765, 0.525, 0.280]", f"[0.765, 0.525, {z}]", "one.veh")
+        same(f"{what} {i}", row, set_up(table("--kc", what, "--axle", "front", "--compare", one, one)))
+
+# two vehicles: the second one with the same number where it has it; numbers of wheels at the same place
+varied = ("f_upper_out_l.z",)
+full = edited("formula_student.veh", "bar_front: {value: 50,", "bar_front: {value: 20,", "full.veh")
+for kind in ("--kc",), ("--sheet",), ("--kc", "--loads"), ("--kc", "--joints"):
+    vary = "--vary", "f_upper_out_l.z=0.27:0.29:" + ("1" if kind == ("--sheet",) else "2") # sheets take their time
+    own, other, both = table(*kind, car, *vary), table(*kind, full, *vary), table(*kind, car, *vary, "--compare", full)
+    fixed = table(*kind, car, *vary, "--compare", models / "five_link.veh") if "--kc" in kind else both
+    count = 0
+    for a, b, ab, f in zip(own, other, both, fixed):
+        for name, x in a.items():
+            stem, _, unit = name.partition(" [")
+            if stem in ("run", *varied):
+                assert x == ab[name] == f[name], name
+            elif not stem.startswith("mode_"): # those of the same shape stand beside each other
+                p, q = f"{stem}.other [{unit}", f"{stem}.difference [{unit}"
+                assert (x, b[name]) == (ab[name], ab[p]), (name, x, b[name], ab[name], ab[p])
+                assert float(ab[q]) == float(ab[p]) - float(x) if ab[q] else not x or "inf" in x + ab[p], name
+                assert f is ab or x == f[name], name
+                count += x != b[name]
+    if fixed is not both: # it does not have that point
+        others = [[x for name, x in row.items() if ".other [" in name] for row in fixed]
+        alone = set_up(table(*kind, "--compare", models / "five_link.veh", models / "five_link.veh"))
+        assert others[0] == others[1] and sum(map(bool, others[0])) > 10
+        assert {x for x in others[0] if x} == set(alone.values())
+    print(f"{' '.join(kind)}: {count} numbers differ between two vehicles")
+
+# a scene beside: its parameters, but for what is varied
+scene = work / "beside.scene"
+scene.write_text("gicscene: 1\nduration: 1\nstep: 0.01\nparameters: {bar_front: 20, bar_rear: 10}\n")
+varied = ("bar_front",)
+both = table("--kc", car, "--vary", "bar_front=30:60:2", "--compare", scene)
+for i, row in enumerate(both):
+    one = edited("formula_student.veh", "bar_front: {value: 50,", f"bar_front: {{value: {30 + 30 * i},", "one.veh")
+    rear = work / "rear.veh"
+    rear.write_text(one.read_text().replace("bar_rear: {value: 70,", "bar_rear: {value: 10,"))
+    a, b = set_up(table("--kc", "--compare", one, one)), set_up(table("--kc", "--compare", rear, rear))
+    for name in "front.roll_rate", "rear.roll_rate":
+        assert row[f"{name} [N m/rad]"] == a[name] and row[f"{name}.other [N m/rad]"] == b[name], (name, row)
+    assert a["rear.roll_rate"] != b["rear.roll_rate"]
+print("a scene beside")
+
 # geometry that is tunable: what a scene sets up
 car = data / "tuning/car.veh"
 varied = ("ball_l",)
@@ -81,6 +130,26 @@ for row in grid:
             close += 1
     assert close > 30, close
     print(f"as a scene sets up: {close} numbers")
+
+# hard points beside a scene, whose parameters have mirror images with values of their own
+scene = work / "sides.scene"
+scene.write_text("gicscene: 1\nduration: 1\nstep: 0.01\nparameters: {ball_l: 0.775, ball_r: 0.795}\n")
+varied = ("upper_u_f_l.z",)
+for row in table("--kc", "--axle", "front", car, scene, "--vary", "upper_u_f_l.z=0.67:0.71:2", "--compare", scene):
+    z = row["upper_u_f_l.z [m]"]
+    text = car.read_text().replace("../../../models", str(models.resolve())).replace("ball_l: {value: 0.786511", "ball_l: {value: 0.775")
+    text = text.replace("points:\n", f"points:\n  upper_u_f_l: [1.6359298, 0.715518, {z}]\n")
+    one = work / "sides.veh"
+    one.write_text(text.replace("  hinge_l:", "  ball_r: {value: 0.795, unit: m, tunable: true}\n  hinge_l:"))
+    alone = set_up(table("--kc", "--axle", "front", "--compare", one, one))
+    close = 0
+    for name, x in bare(row).items():
+        stem = name.removesuffix(".other")
+        if stem in alone and x != "inf":
+            assert abs(float(x) - float(alone[stem])) <= 1e-9 * max(1, abs(float(x))), (name, x, alone[stem])
+            close += 1
+    assert close > 60, close
+print(f"a point beside a scene: {close} numbers")
 
 # a run and a rig of a scene that sets geometric parameters: those of a file that has the numbers
 for i, more in enumerate(("", "base: fixed\ndriven: {spring_f_l: {sine: {amplitude: 0.005, frequency: 2, offset: 0.245}}}\n")):
