@@ -73,7 +73,6 @@ static void find_steering(TestCar *car)
     const Coordinate *c = &model->coordinate[car->axle->steer];
     car->steering = c->input;
     car->straight = model->input[c->input].initial;
-    car->angle *= car->axle->ahead; /* wheels behind turn the vehicle the other way */
     for (int i = 0; i < 2; ++i)
         car->range[i] = (c->range[i] - car->straight) * car->angle;
     if (car->range[0] > car->range[1]) {

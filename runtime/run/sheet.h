@@ -58,8 +58,10 @@ double sheet_axle_place(const Sheet *sheet, const KcAxle *axle, double *aside);
 Sheet sheet_open(Pool *pool, const Model *model, const Scene *scene, Solve solve);
 /* sheet_cornering.c: steady response to steering at several speeds, from the linear model. */
 void sheet_cornering(Sheet *sheet);
-/* The same file: the axle that one driven coordinate steers, and the angle of its wheels, their mean, by a unit of it
- * at rest; NULL: there is none, *why. */
+/* The same file: the foremost axle that one driven coordinate steers, and by a unit of it at rest the steer angle, rad,
+ * over the wheelbase the curvature without slip, positive to the left: the mean of the axle's wheels, of one behind
+ * with the other sign; where this coordinate steers all axles, that of the first less that of the last. NULL: there is
+ * none, or it makes no curve, *why. */
 const KcAxle *sheet_steered(const Sheet *sheet, double *angle, const char **why);
 /* The same file: the steady change z [linear->count] of a unit of the steering coordinate; *falls: the acceleration of
  * the centre of mass downwards, m/s^2, in the motion about which it is taken, NULL: not asked for. Returns a status. */

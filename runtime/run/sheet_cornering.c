@@ -114,47 +114,79 @@ static const KcAxle *steered(const Sheet *sheet, const char **why)
     return NULL;
 }
 
-/* Road-wheel angle a unit of the steering at rest: the mean of the axle's wheels. *idle: a wheel that it does not turn,
- * NULL: none. *standing: the mean angle itself. */
-static double wheel_angle(const Sheet *sheet, const KcAxle *axle, const KcWheel **idle, double *standing)
+static const double slight = 1e-6; /* of the largest angle of an axle's wheels */
+
+/* Road-wheel angles of an axle by a unit of its steering at rest. */
+typedef struct Turning {
+    double mean, most;   /* of all its wheels, signed, to the left; the largest one's size */
+    double standing;     /* the mean angle itself */
+    const KcWheel *idle; /* a wheel that it does not turn; NULL: none */
+} Turning;
+
+/* All 0 where it can not be found. */
+static Turning turning_of(const Sheet *sheet, const KcAxle *axle)
 {
-    static const double slight = 1e-6; /* of the largest angle */
-    double angle[KC_WHEELS], most = 0;
     const KcAxle steering = {.steer = axle->steer};
     KcLook *look = kc_look_new(sheet->kc, axle->rigid ? &steering : axle);
-    *standing = 0;
-    double still[KC_WHEELS] = {0}, along[KC_WHEELS + 1] = {1}, sum = 0;
+    Turning turning = {0, 0, 0, NULL};
+    double angle[KC_WHEELS], still[KC_WHEELS] = {0}, along[KC_WHEELS + 1] = {1};
     if (kc_look(sheet->kc, sheet->w, look) != GIC_OK || (!axle->rigid && !kc_along(axle, look, false, still, 1, along)))
-        return 0;
+        return turning;
     for (int i = 0; i < axle->wheels; ++i) {
         KcPose pose, rate;
         kc_pose(&axle->wheel[i], look, &pose);
         kc_rate(&axle->wheel[i], look, &pose, along, &rate);
         angle[i] = kc_steer_rate(&pose, &rate);
-        most = fmax(most, fabs(angle[i]));
-        sum += angle[i] / axle->wheels;
-        *standing += kc_steer(&pose) / axle->wheels;
+        turning.most = fmax(turning.most, fabs(angle[i]));
+        turning.mean += angle[i] / axle->wheels;
+        turning.standing += kc_steer(&pose) / axle->wheels;
     }
     for (int i = 0; i < axle->wheels; ++i)
-        if (fabs(angle[i]) <= slight * most)
-            *idle = &axle->wheel[i];
-    return sum;
+        if (fabs(angle[i]) <= slight * turning.most)
+            turning.idle = &axle->wheel[i];
+    return turning;
+}
+
+/* The last axle of the base's unit, where all of its axles are steered by one coordinate; NULL: another one stays. */
+static const KcAxle *steered_too(const Sheet *sheet, const KcAxle *axle)
+{
+    const KcAxle *last = NULL;
+    for (int a = 0; a < sheet->kc->axles; ++a) {
+        const KcAxle *other = &sheet->kc->axle[a];
+        if (other->unit || other == axle)
+            continue;
+        if (other->steer != axle->steer)
+            return NULL;
+        last = other;
+    }
+    return last;
 }
 
 const KcAxle *sheet_steered(const Sheet *sheet, double *angle, const char **why)
 {
+    Pool *pool = sheet->pool;
     const KcAxle *axle = steered(sheet, why);
-    const KcWheel *idle = NULL;
-    double standing;
-    *angle = axle ? wheel_angle(sheet, axle, &idle, &standing) : 0;
-    if (idle)
+    *angle = 0;
+    if (!axle)
+        return NULL;
+    const char *name = sheet->model->coordinate[axle->steer].name;
+    const Turning turning = turning_of(sheet, axle);
+    const KcAxle *last = steered_too(sheet, axle);
+    *angle = last ? turning.mean - turning_of(sheet, last).mean : axle->ahead * turning.mean;
+    if (turning.idle)
         *why =
-            pool_print(sheet->pool,
+            pool_print(pool,
                        "the wheels of axle %s are steered separately, %s not by %s; join them, as by a rack, or drive "
                        "them by one coordinate",
-                       axle->name, idle->name, sheet->model->coordinate[axle->steer].name);
-    else if (axle && (*angle == 0 || !(sheet->wheelbase > 0)))
+                       axle->name, turning.idle->name, name);
+    else if (fabs(turning.mean) <= slight * turning.most)
+        *why = pool_print(pool, "%s steers the wheels of axle %s against each other: their mean angle does not change",
+                          name, axle->name);
+    else if (!(sheet->wheelbase > 0))
         *why = "there is one axle";
+    else if (fabs(*angle) <= slight * turning.most)
+        *why = pool_print(pool, "%s steers axles %s and %s alike, by which the vehicle goes aside and does not turn",
+                          name, axle->name, last->name);
     else
         return axle;
     return NULL;
@@ -168,10 +200,9 @@ double sheet_yaw_rate(const Sheet *sheet, const double *z)
 /* Tell where the wheels do not stand straight at rest, so that motion straight ahead is none that lasts. */
 static void look_straight(Sheet *sheet, const KcAxle *axle)
 {
-    const KcWheel *idle = NULL;
     const Coordinate *c = &sheet->model->coordinate[axle->steer];
-    double standing;
-    const double by_unit = wheel_angle(sheet, axle, &idle, &standing), at = sheet->w[axle->steer];
+    const Turning turning = turning_of(sheet, axle);
+    const double standing = turning.standing, by_unit = turning.mean, at = sheet->w[axle->steer];
     const double grain = 1e-3 * (c->range[1] - c->range[0]);
     if (fabs(standing) > oblique)
         sheet_note(sheet,
@@ -210,9 +241,8 @@ void sheet_cornering(Sheet *sheet)
         const double slip = (z[linear->places + Y] + yaw * lever) / v;
         sheet_add(sheet, section, pool_print(sheet->pool, "%s.yaw_gain", name), "Yaw rate by the steer angle", "1/s",
                   yaw / angle);
-        /* wheels behind are steered out of the curve, so that their angle counts with the other sign */
         sheet_add(sheet, NULL, pool_print(sheet->pool, "%s.understeer", name), "Understeer gradient", "rad s^2/m",
-                  axle->ahead * angle / lateral - sheet->wheelbase / (v * v));
+                  angle / lateral - sheet->wheelbase / (v * v));
         sheet_add(sheet, NULL, pool_print(sheet->pool, "%s.roll_gradient", name), "Roll gradient", "rad s^2/m",
                   z[ROLL] / lateral);
         sheet_add(sheet, NULL, pool_print(sheet->pool, "%s.sideslip_gradient", name), "Side-slip gradient", "rad s^2/m",

@@ -24,9 +24,11 @@ check 'one at a time' exits 2
 
 # wheels behind are steered out of the curve: by the yaw rate of a unit of their angle, 1 / (v gain) = L / v^2 + gradient
 run --sheet "$root/tests/data/sheet/behind.veh" -o "$work/behind.csv"
-turns() { awk -F, '{ n[$1] = $2 } END { v = 20; k = 1 / (-n["at_20.yaw_gain"] * v) - 2.5 / v ^ 2
-    d = n["at_20.understeer"] - k; exit !(n["at_20.yaw_gain"] < 0 && k > 1e-4 && k < 3e-4 && d * d < 1e-24) }' "$work/behind.csv"; }
+turns() { awk -F, '{ n[$1] = $2 } END { v = 20; k = 1 / (n["at_20.yaw_gain"] * v) - 2.5 / v ^ 2
+    d = n["at_20.understeer"] - k; exit !(n["at_20.yaw_gain"] > 0 && k > 1e-4 && k < 3e-4 && d * d < 1e-24) }' "$work/behind.csv"; }
 check 'a car that steers behind understeers' turns
+check 'steered in front, behind, by both axles' /usr/bin/python3 -B "$root/tests/vehicle/steered_axles.py" "$gicrun" \
+    "$root/tests/data/manoeuvre/linear.veh" "$work"
 
 # tires without resistance roll without slip: slopes there are those of pure slips, whatever the other direction has (TIRES.md 6).
 # Lateral slopes 10 and 12.5 times the load are an understeer gradient of (1/10 - 1/12.5) / g
@@ -142,4 +144,4 @@ run --compare "$models/hmmwv.veh" --modes "$models/hmmwv.veh"
 check '--compare without --sheet' exits 2
 
 echo "$passed passed, $failed failed"
-[ "$failed" -eq 0 ] && [ "$passed" -ge 38 ]
+[ "$failed" -eq 0 ] && [ "$passed" -ge 39 ]
