@@ -45,7 +45,8 @@ static const char usage[] =
     "                   with --batch: vehicles in one vector (default 4). The code is for gcc and clang\n"
     "  --derivatives    code with functions for derivatives of rates and outputs too; units of FMI with directional\n"
     "                   derivatives\n"
-    "  --implicit       code that takes implicit steps too, for stiff models (models/STIFF.md)\n"
+    "  --implicit       code that takes implicit steps too, for stiff models (models/STIFF.md); units of FMI\n"
+    "                   likewise\n"
     "  --solve FORM     of the equations of motion: auto (default: fewer operations), reduced, articulated for long\n"
     "                   chains, or augmented, with all multipliers\n"
     "  --recovery WAY   of dependent coordinates: auto (default), newton, or closed wherever there is a closed form\n"
@@ -203,10 +204,10 @@ static Options read_options(int count, char **word)
     if (options.derivatives && !fmu && (options.task != TASK_GENERATE || options.batch.lanes || options.scene))
         usage_error("--derivatives is for the code of one vehicle in any scene, without --batch, --lanes and --scene",
                     NULL);
-    if (options.implicit && (options.task != TASK_GENERATE || options.batch.lanes || options.scene))
-        usage_error(
-            "--implicit is for the code of one vehicle in any scene, without --batch, --lanes, --scene and --fmu",
-            NULL);
+    if (options.implicit && !fmu && (options.task != TASK_GENERATE || options.batch.lanes || options.scene))
+        usage_error("--implicit is for an FMU and the code of one vehicle in any scene, without --batch, --lanes and "
+                    "--scene",
+                    NULL);
     if (options.task == TASK_BATCH && !options.batch.lanes)
         options.batch.lanes = 4;
     return options;
@@ -275,7 +276,8 @@ static void write_fmu(Pool *pool, const Model *model, const Sequence *sequence, 
         usage_error("the name of an FMU must end in .fmu", path);
     const Formulation *formulation = formulate(pool, model, sequence, options->solve, options->recovery);
     formulation_validate(pool, formulation, NULL);
-    fmu_write(pool, options->fmi, formulation, setting->scene, options->derivatives, options->templates, path);
+    fmu_write(pool, options->fmi, formulation, setting->scene, options->derivatives,
+              options->implicit || (setting->scene && scene_implicit(setting->scene)), options->templates, path);
 }
 
 static void write_graph(Pool *pool, const Model *model, const Sequence *sequence, const Options *options)
@@ -328,7 +330,10 @@ int main(int count, char **word)
         if (scene->fixed)
             diag_fail((Place){scene->source, 0, 0}, "give geometric parameters numbers in the model",
                       "code for a rig has no geometric parameters, and '%s' has some", model->name);
-        scene_no_implicit(scene, options.task == TASK_FMU ? "an FMU" : "code for one scene");
+        if (options.task == TASK_FMU)
+            scene_no_auto(scene, "an FMU");
+        else
+            scene_no_implicit(scene, "code for one scene");
         model = scene_rig(pool, model, &scene);
         setting.scene = scene;
         if (options.task != TASK_FMU) {

@@ -65,6 +65,21 @@ void describe_units(Text *out, const Variables *all)
     text_print(out, "  </UnitDefinitions>\n");
 }
 
+void describe_methods(Text *out, int indent, bool implicit)
+{
+    static const struct {
+        const char *name, *description;
+    } item[] = {{"AB3", "Adams-Bashforth of order 3"},
+                {"RK4", "Runge-Kutta of order 4"},
+                {"ROS2", "implicit: Rosenbrock-W of order 2"},
+                {"ROS3", "implicit: Rosenbrock-W of order 3"},
+                {"IMEX", "implicit: backward differentiation of order 2, in the forces alone"}};
+    const int count = (implicit ? GIC_IMEX : GIC_RK4) + 1;
+    for (int i = 0; i < count; ++i)
+        text_print(out, "%*s<Item name=\"%s\" value=\"%d\" description=\"%s\"/>\n", indent, "", item[i].name, i + 1,
+                   item[i].description);
+}
+
 void describe_log(Text *out)
 {
     static const char *const category[][2] = {{"logAll", "all messages"},

@@ -97,10 +97,9 @@ void describe_2(Text *out, const Description *d)
     describe_interface(out, d, false);
     describe_units(out, all);
     text_print(out, "  <TypeDefinitions>\n    <SimpleType name=\"solver_method\" description=\"integrator\">\n"
-                    "      <Enumeration>\n"
-                    "        <Item name=\"AB3\" value=\"1\" description=\"Adams-Bashforth of order 3\"/>\n"
-                    "        <Item name=\"RK4\" value=\"2\" description=\"Runge-Kutta of order 4\"/>\n"
-                    "      </Enumeration>\n    </SimpleType>\n  </TypeDefinitions>\n");
+                    "      <Enumeration>\n");
+    describe_methods(out, 8, d->implicit);
+    text_print(out, "      </Enumeration>\n    </SimpleType>\n  </TypeDefinitions>\n");
     describe_log(out);
     describe_experiment(out, &d->experiment);
     text_print(out, "  <ModelVariables>\n");

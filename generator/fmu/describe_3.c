@@ -98,10 +98,9 @@ void describe_3(Text *out, const Description *d)
     text_print(out, " variableNamingConvention=\"structured\">\n");
     describe_interfaces(out, d);
     describe_units(out, all);
-    text_print(out, "  <TypeDefinitions>\n    <EnumerationType name=\"solver_method\" description=\"integrator\">\n"
-                    "      <Item name=\"AB3\" value=\"1\" description=\"Adams-Bashforth of order 3\"/>\n"
-                    "      <Item name=\"RK4\" value=\"2\" description=\"Runge-Kutta of order 4\"/>\n"
-                    "    </EnumerationType>\n  </TypeDefinitions>\n");
+    text_print(out, "  <TypeDefinitions>\n    <EnumerationType name=\"solver_method\" description=\"integrator\">\n");
+    describe_methods(out, 6, d->implicit);
+    text_print(out, "    </EnumerationType>\n  </TypeDefinitions>\n");
     describe_log(out);
     describe_experiment(out, &d->experiment);
     text_print(out, "  <ModelVariables>\n");

@@ -112,7 +112,7 @@ static double picture_height(const Text *png)
 
 /* Everything but binaries. The token follows from all that the description and the C files have. */
 static void add_files(Members *members, int version, const Formulation *f, const Scene *scene, bool derivatives,
-                      const char *templates, const char *path, const Text *picture)
+                      bool implicit, const char *templates, const char *path, const Text *picture)
 {
     Pool *pool = members->pool;
     const char *name = f->model->name, *api = version == 2 ? "fmi2" : "fmi3";
@@ -121,10 +121,13 @@ static void add_files(Members *members, int version, const Formulation *f, const
         c_name, "gic_runtime.c", "fmu_core.c", "fmu_road.c", api_name, derivatives ? "fmu_derivative.c" : NULL, NULL};
     Style style = style_readable;
     style.derivatives = derivatives;
+    style.implicit = implicit;
     Text c = {.pool = pool}, h = {.pool = pool}, xml = {.pool = pool}, header = {.pool = pool}, page = {.pool = pool};
     const Dependence *rate = dependences_of_rates(pool, f);
-    Description d = {pool,   f,    variables_make(pool, f, scene),        experiment_of(scene),           "",
-                     source, rate, dependences_of_outputs(pool, f, rate), dependences_of_places(pool, f), derivatives};
+    Description d = {
+        pool,    f,    variables_make(pool, f, scene, implicit), experiment_of(scene),           "",
+        source,  rate, dependences_of_outputs(pool, f, rate),    dependences_of_places(pool, f), derivatives,
+        implicit};
     void (*const describe)(Text *, const Description *) = version == 2 ? describe_2 : describe_3;
     generate(pool, f, &style, templates, pool_print(pool, "%s.h", name), &c, &h);
     Text draft = {.pool = pool};
@@ -159,7 +162,7 @@ static void add_files(Members *members, int version, const Formulation *f, const
     }
 }
 
-void fmu_write(Pool *pool, int version, const Formulation *f, const Scene *scene, bool derivatives,
+void fmu_write(Pool *pool, int version, const Formulation *f, const Scene *scene, bool derivatives, bool implicit,
                const char *templates, const char *path)
 {
     Members members = {.pool = pool};
@@ -172,7 +175,7 @@ void fmu_write(Pool *pool, int version, const Formulation *f, const Scene *scene
     interrupt_hold(); /* as programs that are run ask for */
     const Text picture = draw(pool, f);
     interrupt_release();
-    add_files(&members, version, f, scene, derivatives, templates, path, &picture);
+    add_files(&members, version, f, scene, derivatives, implicit, templates, path, &picture);
     interrupt_hold(); /* or the folder would stay */
     if (!mkdtemp(folder))
         diag_fail(program_place(), "set TMPDIR to a folder that can be written", "no folder can be made in %s: %s",

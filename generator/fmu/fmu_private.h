@@ -51,13 +51,13 @@ typedef struct Variables {
 
 /* The simulation that an FMU starts with. */
 typedef struct Experiment {
-    double step, stop; /* s */
-    int method, ratio; /* method: gic_method */
+    double step, stop;       /* s */
+    int method, ratio, keep; /* method: gic_method; keep: of implicit ones, steps with one Jacobian */
     double steady;
 } Experiment;
 
 Experiment experiment_of(const Scene *scene);
-const Variables *variables_make(Pool *pool, const Formulation *f, const Scene *scene);
+const Variables *variables_make(Pool *pool, const Formulation *f, const Scene *scene, bool implicit);
 /* The value reference. */
 unsigned variable_reference(const Variable *variable);
 bool is_output(const Variable *variable);
@@ -98,6 +98,7 @@ typedef struct Description {
     const char *const *source; /* names of the C files, NULL at the end */
     const Dependence *rate, *out, *place;
     bool derivatives; /* directional ones are provided */
+    bool implicit;    /* solver.method may be an implicit one */
 } Description;
 
 /* ` name="text"`, escaped. */
@@ -109,6 +110,8 @@ void xml_whole(Text *out, const char *name, long value);
  * everything: indices of variables from 1, or value references. */
 void describe_dependencies(Text *out, const Description *d, const Variable *unknown, bool references);
 void describe_units(Text *out, const Variables *all);
+/* Items of the enumeration of solver.method. */
+void describe_methods(Text *out, int indent, bool implicit);
 void describe_log(Text *out);
 void describe_experiment(Text *out, const Experiment *experiment);
 

@@ -34,14 +34,15 @@ int event_indicators(const Variables *all)
 Experiment experiment_of(const Scene *scene)
 {
     /* without a scene: steps that all of our models take, and ten seconds */
-    Experiment experiment = {0.001, 10, GIC_AB3, 1, 0};
+    Experiment experiment = {0.001, 10, GIC_AB3, 1, 1, 0};
     if (!scene)
         return experiment;
     experiment.stop = scene->duration;
-    if (scene->method == GIC_AB3 || scene->method == GIC_RK4) {
+    if (scene->method < METHOD_ADAMS) {
         experiment.step = scene->step;
         experiment.method = scene->method;
         experiment.ratio = scene->method == GIC_AB3 ? scene->ratio : 1;
+        experiment.keep = scene_implicit(scene) ? scene->keep : 1;
         experiment.steady = scene->steady;
     }
     return experiment;
@@ -370,7 +371,7 @@ static void add_outputs(Making *m)
     }
 }
 
-static void add_solver(Making *m)
+static void add_solver(Making *m, bool implicit)
 {
     const Experiment experiment = experiment_of(m->scene);
     Variable *v = add(m, KIND_SOLVER, 0, "solver.step", "s",
@@ -395,9 +396,19 @@ static void add_solver(Making *m)
     v->least = 1;
     v->most = GIC_RATIOS;
     set_start(v, experiment.ratio);
+    if (!implicit)
+        return;
+    v = add(m, KIND_SOLVER, 3, "solver.keep_jacobian", NULL, "with ROS2, ROS3, IMEX: steps with one Jacobian");
+    v->type = TYPE_WHOLE;
+    v->causality = "parameter";
+    v->variability = "fixed";
+    v->initial = "exact";
+    v->least = 1;
+    v->most = KEEP_MOST;
+    set_start(v, experiment.keep);
 }
 
-const Variables *variables_make(Pool *pool, const Formulation *f, const Scene *scene)
+const Variables *variables_make(Pool *pool, const Formulation *f, const Scene *scene, bool implicit)
 {
     Making m = {pool, f, f->model, scene, pool_alloc(pool, sizeof *m.all)};
     Variable *time = add(&m, KIND_TIME, 0, "time", "s", "time");
@@ -408,7 +419,7 @@ const Variables *variables_make(Pool *pool, const Formulation *f, const Scene *s
     add_outputs(&m);
     add_places(&m);
     add_parameters(&m);
-    add_solver(&m);
+    add_solver(&m, implicit);
     add_states(&m);
     add_contacts(&m);
     return m.all;

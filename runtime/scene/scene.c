@@ -117,11 +117,16 @@ bool scene_implicit(const Scene *scene)
     return scene->method >= GIC_ROS2 && scene->method <= GIC_IMEX;
 }
 
-void scene_no_implicit(const Scene *scene, const char *what)
+void scene_no_auto(const Scene *scene, const char *what)
 {
     if (scene && scene->automatic)
         diag_fail((Place){scene->source, 0, 0}, "name one; `gicrun` with the scene says which one it takes",
                   "%s does not choose an integrator (auto) yet", what);
+}
+
+void scene_no_implicit(const Scene *scene, const char *what)
+{
+    scene_no_auto(scene, what);
     if (scene && scene_implicit(scene))
         diag_fail((Place){scene->source, 0, 0}, "write `integrator: ab3` or `rk4`, with a shorter step",
                   "%s does not take implicit steps (%s) yet", what, integrator_name(scene->method));
@@ -188,10 +193,10 @@ static void read_ratio(Reader *reader, const Item *item, bool replaced)
 
 static void read_keep(Reader *reader, const Item *item, bool replaced)
 {
-    const double most = 1000, keep = doc_number(item, "keep_jacobian");
-    if (!(keep >= 1 && keep <= most && keep == floor(keep)))
+    const double keep = doc_number(item, "keep_jacobian");
+    if (!(keep >= 1 && keep <= KEEP_MOST && keep == floor(keep)))
         diag_fail(item->at, "write how many steps are made with one Jacobian, for example 4",
-                  "keep_jacobian must be a whole number from 1 to %g", most);
+                  "keep_jacobian must be a whole number from 1 to %d", KEEP_MOST);
     if (!scene_implicit(reader->scene) && !replaced)
         diag_fail(item->at, "remove it, or write `integrator: ros2`, `ros3` or `imex`",
                   reader->scene->method == METHOD_BDF ? "%s decides itself how long it keeps a Jacobian"

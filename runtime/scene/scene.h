@@ -111,7 +111,10 @@ int32_t integrator_method(const char *name);
 /* Their names, from 0; NULL: no more. */
 const char *integrator_word(int index);
 const char *integrator_name(int32_t method);
+enum { KEEP_MOST = 1000 };               /* steps with one Jacobian */
 bool scene_implicit(const Scene *scene); /* true for methods with implicit steps */
+/* Fail if the scene has the integrator `auto`. what: "a page" */
+void scene_no_auto(const Scene *scene, const char *what);
 /* Fail if the scene has an implicit integrator or `auto`; for what does not take one. what: "a page" */
 void scene_no_implicit(const Scene *scene, const char *what);
 bool tolerance_known(double tolerance); /* true if variable steps can keep this tolerance */

@@ -163,6 +163,7 @@ void fmu_reset(fmu_instance *instance)
     data->step = FMU_START_STEP;
     data->method = FMU_START_METHOD;
     data->ratio = FMU_START_RATIO;
+    data->keep = FMU_START_KEEP;
     data->gear = FMU_START_GEAR;
 }
 
@@ -189,6 +190,8 @@ fmu_result fmu_initialize(fmu_instance *instance)
     if (status != GIC_OK)
         return said(instance, FMU_ERROR, &data->self, "the model can't be set up", status);
     adopt(data);
+    if (model->implicit)
+        ((gic_implicit_head *)(void *)((char *)&data->self + model->implicit->head_offset))->keep = data->keep;
     gic_restart(&data->self, data->start_time);
     drive(data, -1);
     for (i = 0; i < FMU_INPUTS; ++i)
@@ -371,8 +374,9 @@ fmu_result fmu_get_integer(fmu_instance *instance, uint32_t reference, int32_t *
 {
     fmu_data *data = &instance->data;
     const int32_t kind = (int32_t)(reference / FMU_KIND), i = (int32_t)(reference % FMU_KIND);
-    if (kind == FMU_SOLVER && (i == FMU_SOLVER_METHOD || i == FMU_SOLVER_RATIO)) {
-        *value = i == FMU_SOLVER_METHOD ? data->method : data->ratio;
+    if (kind == FMU_SOLVER &&
+        (i == FMU_SOLVER_METHOD || i == FMU_SOLVER_RATIO || (i == FMU_SOLVER_KEEP && model->implicit))) {
+        *value = i == FMU_SOLVER_METHOD ? data->method : i == FMU_SOLVER_RATIO ? data->ratio : data->keep;
     } else if (kind == FMU_DISCRETE && model->discrete_count > model->free_base && i == model->free_base) {
         const fmu_result result = fmu_initialize(instance);
         *value = data->self.discrete[i];
@@ -391,13 +395,21 @@ fmu_result fmu_set_integer(fmu_instance *instance, uint32_t reference, int32_t v
         return fmu_say(instance, FMU_ERROR, "the variable with value reference %u can't be set now",
                        (unsigned)reference);
     if (kind == FMU_SOLVER && i == FMU_SOLVER_METHOD) {
-        if (value != GIC_AB3 + 1 && value != GIC_RK4 + 1)
-            return fmu_say(instance, FMU_DISCARD, "solver.method is 1 (AB3) or 2 (RK4), not %d", (int)value);
+        const int32_t most = (model->implicit ? GIC_IMEX : GIC_RK4) + 1;
+        if (value < GIC_AB3 + 1 || value > most)
+            return fmu_say(instance, FMU_DISCARD, "solver.method is %s, not %d",
+                           model->implicit ? "1 (AB3), 2 (RK4), 3 (ROS2), 4 (ROS3) or 5 (IMEX)" : "1 (AB3) or 2 (RK4)",
+                           (int)value);
         data->method = value;
     } else if (kind == FMU_SOLVER && i == FMU_SOLVER_RATIO) {
         if (value < 1 || value > GIC_RATIOS)
             return fmu_say(instance, FMU_DISCARD, "solver.ratio must be from 1 to %d, not %d", GIC_RATIOS, (int)value);
         data->ratio = value;
+    } else if (kind == FMU_SOLVER && i == FMU_SOLVER_KEEP && model->implicit) {
+        if (value < 1 || value > FMU_MOST_KEEP)
+            return fmu_say(instance, FMU_DISCARD, "solver.keep_jacobian must be from 1 to %d, not %d",
+                           (int)FMU_MOST_KEEP, (int)value);
+        data->keep = value;
     } else if (kind == FMU_DISCRETE && model->discrete_count > model->free_base && i == model->free_base) {
         if (value < FMU_LEAST_GEAR || value > FMU_MOST_GEAR)
             return fmu_say(instance, FMU_DISCARD, "there is no gear %d", (int)value);
@@ -561,7 +573,7 @@ static int one_step(fmu_data *data, gic_real step)
 {
     if (data->method == GIC_AB3 + 1)
         return gic_step_steady(model, &data->self, step, data->ratio, FMU_STEADY);
-    return gic_step(model, &data->self, step, GIC_RK4);
+    return gic_step(model, &data->self, step, data->method - 1);
 }
 
 fmu_result fmu_do_step(fmu_instance *instance, double point, double length)

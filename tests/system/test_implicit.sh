@@ -324,16 +324,17 @@ for integrator in ros2 ros3 auto; do
     wanted="does not take implicit steps ($integrator) yet"
     [ $integrator != auto ] || wanted='does not choose an integrator (auto) yet'
     for way in '-o none.c' '--fmu 3 -o none.fmu' '--report none.html'; do
+        case "$integrator $way" in ros*--fmu*) continue ;; esac # test_fmu_implicit.sh
         # shellcheck disable=SC2086  # options
         "$gicgen" --scene good.scene $way "$models/hmmwv.veh" >out 2>err
         { [ $? -eq 1 ] && grep -q "^good.scene:.*error: .*$wanted" err && grep -q 'remedy: ' err && [ -z "$(ls none.* 2>/dev/null)" ]; }
         verdict $? "gicgen --scene $way with $integrator is refused"
     done
 done
-for way in '--batch 4' '--lanes 4' "--scene $models/scenes/paper_run.scene" --sequence '--fmu 3'; do
+for way in '--batch 4' '--lanes 4' "--scene $models/scenes/paper_run.scene" --sequence; do
     # shellcheck disable=SC2086  # options
     "$gicgen" --implicit $way "$models/hmmwv.veh" -o none.c >out 2>err
-    { [ $? -eq 2 ] && grep -q 'without --batch, --lanes, --scene and --fmu' err && [ ! -e none.c ]; }
+    { [ $? -eq 2 ] && grep -q 'without --batch, --lanes and --scene' err && [ ! -e none.c ]; }
     verdict $? "--implicit $way is refused"
 done
 
