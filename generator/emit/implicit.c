@@ -53,6 +53,7 @@ void write_implicit_members(void *context, Text *out, int indent)
     if (!g->style->implicit)
         return;
     const RateColumns *weighed = weighed_columns(g);
+    line(out, 0, "#define %s_IMPLICIT 1 /* for code of many vehicles */", g->upper);
     line(out, indent, "gic_implicit_head implicit; /* of implicit steps: .keep is for the caller */");
     line(out, indent, "gic_real implicit_number[GIC_IMPLICIT(%s_STATE_ROOM, %d) + %d];", g->upper, jacobian_columns(g),
          weighed ? weighed->masses : 0);

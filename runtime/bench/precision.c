@@ -24,7 +24,7 @@ enum {
     MOST_ROWS = 96,
     PARTS = 4,          /* the scene's step, its half, .. */
     TOLERANCES = 7,     /* with --quick every other one */
-    IMPLICIT = 5,       /* colour of ros2, ros3, bdf */
+    IMPLICIT = 5,       /* colour of ros2, ros3, imex, bdf */
     GROUP_REFERENCE = 6 /* of the line at the reference's uncertainty */
 };
 
@@ -165,7 +165,7 @@ static void add_all(Study *study)
     if (!is_stiff(study->scene))
         return;
     const int32_t keep = study->scene->keep;
-    for (int32_t method = GIC_ROS2; method <= GIC_ROS3; ++method) {
+    for (int32_t method = GIC_ROS2; method <= GIC_IMEX; ++method) {
         add_parts(study, integrator_name(method), "", IMPLICIT, method, (Ride){.ratio = 1});
         if (keep > 1)
             add_parts(study, integrator_name(method), pool_print(study->bench->pool, ", a Jacobian for %d steps", keep),
@@ -372,8 +372,9 @@ static void tell_begin(const Bench *bench, const char *engine)
         "Ways: constant steps find the time of a change of gear within the step and go on from there; "
         "`late gears`, for scenes in which the gear changes, leaves it to the end of the step in which it is due. "
         "`contacts located`, for scenes in which wheels or stops get or lose their load, makes steps in parts there "
-        "(`locate: true`). Variable steps end at both. Scenes with an implicit integrator (`ros2`, `ros3`, `bdf`) are "
-        "gone by all of these too, and times are compared at equal errors.");
+        "(`locate: true`). Variable steps end at both. Scenes with an implicit integrator (`ros2`, `ros3`, `imex`, "
+        "`bdf`) "
+        "are gone by all of these too, and times are compared at equal errors.");
 }
 
 /* ---- files of their own ------------------------------------------------------------------------------------- */

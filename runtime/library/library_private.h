@@ -71,6 +71,8 @@ typedef struct OpenModel {
 const Model *model_for(const OpenModel *open, Pool *pool);
 /* The same for a call that leaves nothing behind: for the first one the model as it was read, which saves time. */
 const Model *model_once(OpenModel *open, Pool *pool);
+/* True if its `integrator` has implicit steps: code of instances and batches has them then. */
+bool model_implicit(const OpenModel *model);
 /* The model's code for any scene, compiled by the first call. */
 int model_engine(const gicl_library *library, OpenModel *model, gicl_messages *said);
 void model_keep(OpenModel *model);
@@ -109,6 +111,8 @@ bool vehicles_view(const Vehicles *vehicles, int kind, double **data, int *count
 /* Bring a vehicle to the start, or leave it as it is. parameter: NULL: those of scene or model. `copy` then has what
  * happened. Returns a status. */
 int vehicle_start(const Vehicles *vehicles, int v, const double *parameter);
+/* True if the method has implicit steps and the code has none. */
+bool vehicles_lack(const Vehicles *vehicles, int method);
 /* Steps by gic_step() or gic_step_dual(), up to the first that fails. Returns a status. */
 int vehicle_step(const Vehicles *vehicles, int v, double step, int method, int ratio, int64_t steps);
 /* Outputs of the present state, by `copy`, which then has what happened. Returns a status. */

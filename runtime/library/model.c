@@ -214,6 +214,12 @@ const Model *model_once(OpenModel *open, Pool *pool)
 
 /* ---- code --------------------------------------------------------------------------------------------------- */
 
+bool model_implicit(const OpenModel *model)
+{
+    const int32_t method = model->integrator ? integrator_method(model->integrator) : GIC_AB3;
+    return method >= GIC_ROS2 && method <= GIC_IMEX;
+}
+
 static void open_engine(void *context)
 {
     OpenModel *model = context;
@@ -226,6 +232,7 @@ static void open_engine(void *context)
     Pool *pool = pool_new();
     EngineOptions options = model->options;
     options.lanes = 0; /* of runs alone */
+    options.implicit = model_implicit(model) && engine_has_implicit(name);
     model->engine = engine_open(pool, name, model_for(model, pool), &options);
     model->engine_pool = pool;
 }

@@ -41,8 +41,9 @@ static const Engine *open_lanes(Pool *pool, const Making *making, const gic_batc
     const OpenModel *model = making->model;
     const Batch batch = {making->count, making->lanes};
     const char *why;
-    const Engine *engine =
-        engine_batch(pool, model_for(model, pool), &model->options, &batch, IN_LANES_AS_ALONE, many, &why);
+    EngineOptions options = model->options;
+    options.implicit = model_implicit(model);
+    const Engine *engine = engine_batch(pool, model_for(model, pool), &options, &batch, IN_LANES_AS_ALONE, many, &why);
     if (!engine)
         diag_fail((Place){model->model->source, 0, 0}, "let them make their steps one after another: lanes 1",
                   "no code for many vehicles at once: %s", why);
@@ -190,6 +191,11 @@ int vehicle_start(const Vehicles *vehicles, int v, const double *parameter)
     return status;
 }
 
+bool vehicles_lack(const Vehicles *vehicles, int method)
+{
+    return method >= GIC_ROS2 && method <= GIC_IMEX && !vehicles->code->implicit;
+}
+
 int vehicle_step(const Vehicles *vehicles, int v, double step, int method, int ratio, int64_t steps)
 {
     gic_head *self = vehicle_of(vehicles, v);
@@ -218,7 +224,8 @@ int vehicle_outputs(const Vehicles *vehicles, int v)
 void lanes_step(const Vehicles *vehicles, double step, int method, int ratio, int64_t steps)
 {
     const gic_batch_model *many = vehicles->many;
-    const bool known = ratio == 1 ? method == GIC_AB3 || method == GIC_RK4 : ratio > 1 && method == GIC_AB3;
+    const bool implicit = many->model->implicit && method >= GIC_ROS2 && method <= GIC_IMEX;
+    const bool known = ratio == 1 ? method == GIC_AB3 || method == GIC_RK4 || implicit : ratio > 1 && method == GIC_AB3;
     for (int v = 0; v < vehicles->count && !known; ++v)
         vehicle_of(vehicles, v)->status = GIC_ERROR_ARGUMENT;
     while (known && steps > 0) {

@@ -2,7 +2,7 @@
  * The choice looks at small motions about states of the run's first tenth of a second: at its first state, and at three
  * more on the way, which variable steps go. Explicit steps are shortened until all these motions are stable; implicit
  * ones are as long as the scene's. Work is counted in right-hand sides, so that the choice is the same on all machines.
- */
+ * imex, of order 2, is offered where the scene keeps Jacobians and no motion is lost with it that ros3 shows. */
 #include "base/message.h"
 #include "engine/engine.h"
 #include "gic_runtime.h"
@@ -11,22 +11,23 @@
 #include "run/engines.h"
 #include "run/linearize.h"
 #include "run/run.h"
+#include "run/step_growth.h"
 #include "run/variable_step.h"
 
 #include <math.h>
 #include <string.h>
 
-enum { LOOKS = 4, METHODS = 3 };
+enum { LOOKS = 4, METHODS = 4 };
 
 static const double start = 0.1;     /* s that are looked at */
 static const double reserve = 0.9;   /* of the longest stable step: motions change along the run */
 static const double accuracy = 1e-6; /* of the way */
 
-/* The methods, of order 3 or more, and the work of a step in right-hand sides; ros3: measured, models/STIFF.md. */
+/* The methods and the work of a step in right-hand sides, without and for a new Jacobian; measured: models/STIFF.md. */
 static const struct {
     int32_t method;
-    double work;
-} offer[METHODS] = {{GIC_AB3, 1}, {GIC_RK4, 4}, {GIC_ROS3, 13}};
+    double work, jacobian;
+} offer[METHODS] = {{GIC_AB3, 1, 0}, {GIC_RK4, 4, 0}, {GIC_ROS3, 6, 7}, {GIC_IMEX, 1.6, 7}};
 
 /* What limits an explicit method. */
 typedef struct Limit {
@@ -41,7 +42,20 @@ typedef struct Choice {
     const Scene *ahead; /* the scene by variable steps, without what depends on conditions */
     gic_head *self, *copy;
     Limit limit[METHODS];
+    bool offered[METHODS];
 } Choice;
+
+/* True if a step of imex resolves to mode_accuracy all motions that one of ros3 resolves so. */
+static bool imex_shows(const Modes *modes, double step)
+{
+    for (int k = 0; k < modes->count; ++k) {
+        const Mode *mode = &modes->mode[k];
+        if (step_accurate(GIC_ROS3, mode->real, mode->imaginary, mode_accuracy) >= step &&
+            step_accurate(GIC_IMEX, mode->real, mode->imaginary, mode_accuracy) < step)
+            return false;
+    }
+    return true;
+}
 
 /* Take the motions about the present state into account. A state without derivatives is passed over. */
 static void look(Choice *choice, int32_t ratio)
@@ -57,6 +71,8 @@ static void look(Choice *choice, int32_t ratio)
         return;
     const Modes *modes = modes_try(pool, choice->linear, A);
     for (int i = 0; modes && i < METHODS; ++i) {
+        if (offer[i].method == GIC_IMEX)
+            choice->offered[i] = choice->offered[i] && imex_shows(modes, choice->ahead->step);
         const StepLimit found =
             modes_step(choice->linear, modes, offer[i].method, offer[i].method == GIC_AB3 ? ratio : 1);
         if (found.stable < choice->limit[i].step)
@@ -117,7 +133,7 @@ static void tell(const Choice *choice, const Scene *asked, const Scene *scene, c
     }
     text_print(out, "\n  right-hand sides for %.6g s, about:", asked->step);
     for (int i = 0; i < METHODS; ++i)
-        if (implicit || offer[i].method <= GIC_RK4)
+        if (choice->offered[i])
             text_print(out, " %s %.4g", integrator_name(offer[i].method), work[i]);
     text_print(out, "%s\n", implicit ? "" : "; no implicit steps with this engine");
     diag_note(text.s);
@@ -141,14 +157,17 @@ const Scene *scene_choose_step(Pool *pool, const Model *model, const Scene *scen
     choice.linear = linear_open(pool, choice.engine);
     choice.self = instance_new(pool, choice.engine);
     choice.copy = instance_new(pool, choice.engine);
-    for (int i = 0; i < METHODS; ++i)
+    for (int i = 0; i < METHODS; ++i) {
         choice.limit[i] = (Limit){.step = INFINITY};
+        choice.offered[i] =
+            offer[i].method <= GIC_RK4 || (implicit && (offer[i].method != GIC_IMEX || scene->keep > 1));
+    }
     go(&choice, scene->ratio);
     double work[METHODS];
     int best = 0;
     for (int i = 0; i < METHODS; ++i) {
-        work[i] = offer[i].work * parts_of(&choice.limit[i], scene->step);
-        if (work[i] < work[best] && (implicit || offer[i].method <= GIC_RK4))
+        work[i] = (offer[i].work + offer[i].jacobian / scene->keep) * parts_of(&choice.limit[i], scene->step);
+        if (work[i] < work[best] && choice.offered[i])
             best = i;
     }
     const double parts = parts_of(&choice.limit[best], scene->step);

@@ -197,7 +197,7 @@ static void read_keep(Reader *reader, const Item *item, bool replaced)
     if (!(keep >= 1 && keep <= KEEP_MOST && keep == floor(keep)))
         diag_fail(item->at, "write how many steps are made with one Jacobian, for example 4",
                   "keep_jacobian must be a whole number from 1 to %d", KEEP_MOST);
-    if (!scene_implicit(reader->scene) && !replaced)
+    if (!scene_implicit(reader->scene) && !reader->scene->automatic && !replaced)
         diag_fail(item->at, "remove it, or write `integrator: ros2`, `ros3` or `imex`",
                   reader->scene->method == METHOD_BDF ? "%s decides itself how long it keeps a Jacobian"
                                                       : "%s needs no Jacobian",
@@ -624,7 +624,7 @@ static const Scene *scene_of(Pool *pool, const Item *root, const char *path, con
     if (path)
         scene_check_fit(pool, root, path, model);
     read_integrator(&reader, root, integrator, tolerance);
-    scene->ratio = 1;
+    scene->ratio = scene->keep = 1;
     if (doc_find(root, "ratio"))
         read_ratio(&reader, doc_find(root, "ratio"), integrator);
     if (doc_find(root, "keep_jacobian"))

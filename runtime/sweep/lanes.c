@@ -19,6 +19,8 @@
 
 const char *lanes_unfit(const Scene *scene, const Model *model)
 {
+    if (scene_implicit(scene))
+        return "implicit steps are made run by run";
     if (scene->method > GIC_RK4)
         return "steps of a scene with variable ones are each run's own";
     if (scene->locate)

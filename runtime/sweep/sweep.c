@@ -48,18 +48,22 @@ static const Engine *open_code(Pool *pool, const SweepRequest *request, const Mo
     const Batch batch = {VEHICLES, LANES};
     const Engine *engine = NULL;
     const char *why = lanes_unfit(scene, model);
+    EngineOptions code = request->code;
+    code.implicit = scene_implicit(scene);
+    if (request->engine && !engine_has_implicit(request->engine))
+        scene_no_implicit(scene, pool_print(pool, "the engine '%s'", request->engine));
     if (request->engine)
-        return engine_open(pool, request->engine, model, &request->code);
+        return engine_open(pool, request->engine, model, &code);
     const bool tried = !why;
     if (tried)
-        engine = engine_batch(pool, model, &request->code, &batch, IN_LANES, many, &why);
+        engine = engine_batch(pool, model, &code, &batch, IN_LANES, many, &why);
     if (engine)
         return engine;
     if (!request->quiet)
         diag_note(
             pool_print(pool, "%s: note: each run by itself instead of lanes: %s\n", program_place().source->path, why));
-    const bool compiled = *many || (!tried && compiler_starts(pool, &request->code));
-    return engine_open(pool, compiled ? "cc" : "tcc", model, &request->code);
+    const bool compiled = *many || (!tried && compiler_starts(pool, &code));
+    return engine_open(pool, compiled ? "cc" : "tcc", model, &code);
 }
 
 static uint64_t file_hash(Pool *pool, const char *path)
@@ -265,7 +269,7 @@ static void open_sweep(Sweep *sweep, const SweepRequest *request, bool planned, 
         source_keep(sweep->scene->source, i ? journal_path : request->results);
     }
     scene_no_rig(sweep->scene);
-    scene_no_implicit(sweep->scene, "a sweep");
+    scene_no_auto(sweep->scene, "a sweep");
     sweep->drawn = sweep->scene;
     sweep->solve = request->code.solve;
     sweep->scene = equilibrium_start(pool, model, sweep->scene, request->code.solve);

@@ -378,6 +378,7 @@ precision -o "$work/stiff" "$work/mount.veh" "$work/mount.scene"
 check 'a stiff vehicle' [ $? -eq 0 ]
 sed 's/"\(ros[23]\), [^"]*"/\1 kept/; s/"ab3, one rate"/ab3/' "$work/stiff/precision1.csv" >"$work/rows.csv"
 sed 's/"\(ros[23]\), [^"]*"/\1 kept/; s/"ab3, one rate"/ab3/' "$work/stiff/equal1.csv" >"$work/equal.csv"
+check 'imex is among them, with and without kept Jacobians' [ 2 -eq "$(grep -c '"*imex.*"*0.0625 ms' "$work/rows.csv")" ]
 check 'implicit ways have their orders' awk -F, '$3 ~ /^ros/ && $4 == "0.0625 ms" {++n; d = $6 - substr($3, 4, 1)
     if (d < -0.2 || d > 0.2) bad = 1} END {exit bad || n != 4}' "$work/rows.csv"
 check 'bdf comes nearer with its tolerance' awk -F, '$3 == "bdf" {++n; if (n > 1 && !($5 < before / 10)) bad = 1; before = $5}

@@ -74,7 +74,7 @@ verdict $? "pendulum, --implicit: ros3 that the importer chooses"
 version=2
 sed 's/@period@/0.03/; s/@offset@/0.005/; s/@delay@/0.04/; s/@quantum@//; s/@mean@/0.1/; s/@mean_offset@/0/; s/@spring@/18/; s/@start@/0.5/' \
     "$root/tests/controllers/loop.veh.in" >"$work/loop.veh"
-printf 'gicscene: 1\nstep: 0.007\noutput_step: 0.07\nduration: 1.4\nintegrator: ros2\nkeep_jacobian: 4\n' >"$work/loop.scene"
+printf 'gicscene: 1\nstep: 0.007\noutput_step: 0.07\nduration: 1.4\nintegrator: ros2\n' >"$work/loop.scene"
 implicit "$work/loop.veh" "$work/loop.scene" 0.07 1.4
 
 # any calls in any order, under sanitizers

@@ -110,6 +110,19 @@ automatic 0.001 'ab3, steps of 0.0005 s$' ab3 0.0005
 automatic 0.002 'ab3, steps of 0.0005 s$' ab3 0.0005 --engine tape
 run oscillator.veh auto.scene -o auto.csv
 check "auto: what limits it" says "ab3 is stable up to 0.000[67][0-9]* s, rk4 up to 0.00[23][0-9]* s: 'x', eigenvalue -100 +- 995i 1/s at t = 0 s"
+# imex is offered with Jacobians that are kept, where ros3 shows no motion that it does not
+cp pulled one_by_one
+echo 'keep_jacobian: 8' >>pulled
+automatic 0.02 'imex, steps of 0.02 s$' imex 0.02
+run oscillator.veh auto.scene -o auto.csv
+check "auto: what imex takes" says "for 0.02 s, about: .* ros3 6.875 imex 2.475$"
+sed -i 's/^step: .*/step: 0.0007/; s/^output_step: .*/output_step: 0.07/; s/^duration: .*/duration: 0.7/' auto.scene
+run oscillator.veh auto.scene -o auto.csv
+check "auto: at 0.7 ms ros3 shows the vibration to 1 %, imex does not" says "for 0.0007 s, about: .* ros3 6.875$"
+sed 's/^step: .*/step: 0.02/; s/^output_step: .*/output_step: 0.1/' auto.scene >tape.scene
+run --engine tape oscillator.veh tape.scene -o auto.csv
+check "auto: no implicit steps with the tape" says "integrator auto: [abrk34]*, "
+mv one_by_one pulled
 run --linearize --at 0.1 oscillator.veh auto.scene
 check "auto is refused where nothing chooses" says 'does not choose an integrator (auto) yet'
 

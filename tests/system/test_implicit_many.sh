@@ -1,0 +1,91 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# test_implicit_many.sh GICSWEEP GICRUN: implicit steps of many vehicles: sweeps have gicrun's digits, vehicles of batches the bits
+# that they have alone, in lanes too, and what is refused.
+gicsweep=$(realpath "$1")
+gicrun=$(realpath "$2")
+root=$(cd "$(dirname "$0")/../.." && pwd)
+# shellcheck source=tests/lib/checking.sh
+. "$(dirname "$0")/../lib/checking.sh"
+cd "$work" || exit 1
+car=$root/models/quarter_car.veh
+
+# scene SPRING: with its spring, m
+scene() {
+    printf 'gicscene: 1\nduration: 0.4\nstep: 0.004\noutput_step: 0.02\nintegrator: %s\nkeep_jacobian: 3\noutputs: [carriage.z, wheel.z]\n' "$integrator"
+    echo "initial: {coordinates: {spring: $1}}"
+}
+# the columns of a sweep's row in a run of gicrun: end, least, greatest of both outputs
+ranges() {
+    awk -F, 'NR > 1 { for (i = 2; i <= 3; ++i) { end[i] = $i; if (NR == 2 || $i + 0 < low[i] + 0) low[i] = $i
+                      if (NR == 2 || $i + 0 > high[i] + 0) high[i] = $i } }
+             END { print end[2] "," low[2] "," high[2] "," end[3] "," low[3] "," high[3] }' "$1"
+}
+for integrator in ros3 imex; do
+    scene 0.25 >sweep.scene
+    "$gicsweep" --engine tcc "$car" sweep.scene --vary state/spring=0.24:0.28:3 -o sweep.csv 2>err
+    check "$integrator: a sweep" [ $? -eq 0 ]
+    for run in 0 2; do
+        row=$(sed -n "$((run + 2))p" sweep.csv)
+        scene "$(echo "$row" | cut -d, -f2)" >one.scene
+        "$gicrun" -q --general "$car" one.scene -o one.csv 2>err
+        check "$integrator: run $run has gicrun's digits" [ "$(echo "$row" | cut -d, -f5-)" = "$(ranges one.csv)" ]
+    done
+done
+"$gicsweep" "$car" sweep.scene --vary state/spring=0.24:0.28:2 -o other.csv 2>err
+check "no lanes, which it says" says "note: each run by itself instead of lanes: implicit steps are made run by run"
+cut -d, -f3- other.csv | sed -n 2p >first
+check "the digits are the same" sh -c 'cut -d, -f3- sweep.csv | sed -n 2p | cmp -s - first'
+rm -f none.csv
+"$gicsweep" --engine tape "$car" sweep.scene --vary state/spring=0.24:0.28:2 -o none.csv 2>err
+check "no implicit steps with the tape" sh -c '[ ! -e none.csv ] && grep -q "tape.* does not take implicit steps (imex) yet" err'
+sed '/keep/d; s/^integrator: .*/integrator: auto/' sweep.scene >auto.scene
+"$gicsweep" "$car" auto.scene --vary state/spring=0.24:0.28:2 -o none.csv 2>err
+check "a sweep does not choose" sh -c '[ ! -e none.csv ] && grep -q "a sweep does not choose an integrator (auto) yet" err'
+
+# batches: a model without fast states, and one with
+cat >many.py <<'END'
+import sys
+import gicgen
+
+for path in sys.argv[1:]:
+    model = gicgen.Model(path, integrator="ros3")
+    for lanes in 1, 4:
+        many = model.batch(5, lanes=lanes)
+        for method in "ros2", "ros3", "imex", "ab3", "imex":  # by turns: nothing of the one is left in the other
+            cars = [model.instance() for v in range(5)]
+            for v, car in enumerate(cars):
+                state = many.states[v].copy()
+                state[0] += 1e-3 * (v + 1)
+                many.states[v] = state
+                car.states.array[:] = state
+                car.restart()
+            many.restart()
+            for k in range(2):
+                many.step(0.002, 7, method)
+                for v, car in enumerate(cars):
+                    car.step(0.002, 7, method)
+                    assert (many.states[v] == car.states.array).all(), (path, lanes, method, v)
+        # one that fails disturbs no other
+        many = model.batch(5, lanes=lanes)
+        many.states.array[(1, 0) if lanes == 1 else (0, 1, 0)] = float("nan")
+        many.restart()
+        many.step(0.002, 3, "ros3", check=False)
+        car = model.instance()
+        car.step(0.002, 3, "ros3")
+        assert many.status[1] != 0 and (many.status[[0, 2, 3, 4]] == 0).all()
+        assert all((many.states[v] == car.states.array).all() for v in (0, 2, 3, 4))
+plain = gicgen.Model(sys.argv[1])
+for what in plain.instance(), plain.batch(2):
+    try:
+        what.step(0.002, 1, "ros3")
+    except gicgen.Error as error:
+        assert "its code has no implicit steps" in str(error), error
+    else:
+        raise AssertionError("implicit steps without their code")
+END
+GICGEN_LIBRARY=$(dirname "$gicrun")/libgic.so PYTHONPATH=$root/runtime/python /usr/bin/python3 many.py "$car" "$root/tests/data/laws/states.veh" >out 2>err
+verdict $? "vehicles of batches have the bits that they have alone"
+
+echo "$passed passed, $failed failed"
+[ "$failed" -eq 0 ]
