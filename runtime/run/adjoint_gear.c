@@ -48,12 +48,12 @@ int gear_back(Back *back, const TrailStep *step)
     int status = GIC_OK;
     double none[states + 1], by_share = 0;
     memset(none, 0, sizeof none);
-    back->by_late = 0;
-    back->rest = (Rest){.going = true, .end = step->start + h, .length = step->start + h - change->time};
+    double by_late = 0;
+    back->rest = (Rest){.going = true, .start = change->time, .end = step->start + h, .by_late = &by_late};
     for (int k = parts - 1; k >= 0 && status == GIC_OK; --k) {
         const int first = there + 3 + k * (RK4_STAGES + 1);
         settle_back(back, trail_event(run->trail, first + RK4_STAGES));
-        status = rk4_back(back, first, back->rest.length / parts, none, 0);
+        status = rk4_back(back, first, (back->rest.end - back->rest.start) / parts, none, 0);
     }
     back->rest.going = false;
     if (status != GIC_OK)
@@ -61,7 +61,7 @@ int gear_back(Back *back, const TrailStep *step)
     *tangent_age(run, back->state) = 0;
     for (int i = 0; i < states; ++i)
         by_share += bend[i] * back->state[i];
-    status = guard_back(back, change, by_share + h * back->by_late);
+    status = guard_back(back, change, by_share + h * by_late);
     settle_back(back, settled);
     const Cubic by = tangent_between(step->share, h);
     adjoint_set(states, by.from, back->state, back->from);

@@ -16,14 +16,18 @@ typedef struct Back {
                         of the fast states are at fast steps */
     double *link[4]; /* [links] of dual rate: at the start of this step and the two before it, and at its end */
     double *sum, *stage[3]; /* [states] work */
-    Rest rest;              /* of a step after a change of gear */
-    double by_late, *from;  /* by the time of the change; [states] by the state at the start of the step */
+    Rest rest;              /* of a piece whose ends move */
+    double *from;           /* [states] by the state at the start of the step */
     double *start_rate;     /* [states] by the rate at the start of the step, besides those that steps sum */
     double *moment;         /* [fast steps and 2 before][states] work of dual rate */
-    double *derivative;     /* [variables] of inputs */
-    double *parameter;      /* [parameters] */
-    DriveSlope drive;       /* by what the driver keeps */
-    double value;           /* the number itself */
+    double *sums;           /* [all_sums] the four below */
+    int all_sums;
+    double *derivative; /* [variables] of inputs */
+    double *parameter;  /* [parameters] */
+    double *clock;      /* [clocks] by the times that move */
+    double *present;    /* [profiles] by the value from which a profile has begun */
+    DriveSlope drive;   /* by what the driver keeps */
+    double value;       /* the number itself */
 } Back;
 
 /* A knot of the inputs within a step. */
@@ -51,6 +55,17 @@ void drive_inputs_back(Back *back, double time, const double *by, const Knot *kn
 void drive_look_back(Back *back, const TrailEvent *look);
 /* Add derivatives by the inputs at a time to those by the numbers of profiles. */
 void inputs_back(Back *back, double time, const double *by, const Knot *knot);
+/* Back through a step, or a part of one, but for what was before it. weight: of the output at its start. */
+int part_back(Back *back, const TrailStep *step, double weight);
+/* adjoint_event.c: the same through the piece whose last part is step `last` of the trail, and which ends where a
+ * condition becomes true. */
+int located_back(Back *back, int64_t last, double weight);
+/* Back through the changes of inputs at the start of a step. */
+void happenings_back(Back *back, const TrailStep *step);
+/* By the inputs at a time, as profiles have begun there. */
+void begun_inputs_back(Back *back, double time, const double *by);
+/* By a clock, as inputs and the time of what has just been pulled follow it. */
+void clock_back(Back *back, int clock, double time);
 /* Back through a step of RK4 of h seconds, whose right-hand sides are four events from `event` on, and then its state.
  * by_rate: by the rate at its start; weight: of the output there. */
 int rk4_back(Back *back, int event, double h, const double *by_rate, double weight);

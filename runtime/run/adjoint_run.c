@@ -64,10 +64,11 @@ void inputs_back(Back *back, double time, const double *by, const Knot *knot)
     const TangentRun *run = back->run;
     if (run->scene->driver)
         drive_inputs_back(back, time, by, knot);
+    begun_inputs_back(back, time, by);
     for (int k = 0; k < run->variables; ++k) {
         const RunVariable *v = &run->variable[k];
         double change[3], bent[3][3];
-        if (v->kind != BY_INPUT)
+        if (v->kind != BY_INPUT || tangent_has_begun(run, v->index))
             continue;
         const int count = tangent_input(v, time, change);
         const double near = knot ? knot->step / 16 : 0;
@@ -164,18 +165,37 @@ void adjoint_set(int count, double factor, const double *from, double *to)
         to[i] = factor * from[i];
 }
 
-/* After a change of gear: by its time. */
-static void late_back(Back *back, double time, const double *by_rate)
+/* By the time at which was evaluated what has just been pulled. */
+static double by_time_of(const TangentRun *run, double time)
 {
-    const TangentRun *run = back->run;
     const Direction *along = &run->linear->along;
     double rate[run->inputs + 1], by_time = *along->time;
     tangent_input_rates(run, time, rate);
     for (int i = 0; i < run->inputs; ++i)
         by_time += along->u[i] * rate[i];
+    return by_time;
+}
+
+void clock_back(Back *back, int clock, double time)
+{
+    if (clock >= 0)
+        back->clock[clock] += by_time_of(back->run, time);
+}
+
+/* In a piece whose ends move: by their times. */
+static void late_back(Back *back, double time, const double *by_rate)
+{
+    const TangentRun *run = back->run;
+    const Rest *rest = &back->rest;
+    const double length = rest->end - rest->start, share = (time - rest->start) / length;
+    const double by_time = by_time_of(run, time);
+    double by_length = 0;
     for (int i = 0; i < run->states; ++i)
-        back->by_late -= by_rate[i] * run->linear->rate[i] / back->rest.length;
-    back->by_late += (back->rest.end - time) / back->rest.length * by_time;
+        by_length += by_rate[i] * run->linear->rate[i] / length;
+    if (rest->by_late)
+        *rest->by_late += (1 - share) * by_time - by_length;
+    if (rest->by_later)
+        *rest->by_later += share * by_time + by_length;
 }
 
 int rate_back(Back *back, const TrailEvent *call, const double *by_rate, double weight, const Knot *knot)
@@ -276,7 +296,7 @@ static int single_back(Back *back, const TrailStep *step, double weight)
     return status;
 }
 
-static int step_back(Back *back, const TrailStep *step, double weight)
+int part_back(Back *back, const TrailStep *step, double weight)
 {
     const TangentRun *run = back->run;
     const int knots = (step->end - step->knots) / 3;
@@ -290,9 +310,32 @@ static int step_back(Back *back, const TrailStep *step, double weight)
     memset(back->start_rate, 0, (size_t)run->states * sizeof *back->start_rate);
     if (status == GIC_OK && step->knots > step->gear)
         status = gear_back(back, step);
+    back->rest = (Rest){.going = step->late >= 0 || step->later >= 0,
+                        .start = step->piece_start,
+                        .end = step->piece_end,
+                        .by_late = step->late < 0 ? NULL : &back->clock[step->late],
+                        .by_later = step->later < 0 ? NULL : &back->clock[step->later]};
     if (status == GIC_OK)
-        status = (step->dual ? dual_back : single_back)(back, step, step->sample < 0 ? weight : 0);
+        status = (step->dual ? dual_back : single_back)(back, step, weight);
+    back->rest.going = false;
     adjoint_add(run->states, 1, back->from, back->state);
+    return status;
+}
+
+/* Back through step *i of the trail, or the piece that it ends, whose first one is *i then. */
+static int step_back(Back *back, int64_t *i, AdjointWeight *weigh, const void *context)
+{
+    const TangentRun *run = back->run;
+    const TrailStep *last = trail_step(run->trail, *i);
+    const int64_t at = *i;
+    *i = last->guard >= 0 ? last->piece : at;
+    const TrailStep *step = trail_step(run->trail, *i);
+    const double weight = step->number < 0 ? 0 : weigh(context, step->number), own = step->sample < 0 ? weight : 0;
+    int status = last->guard >= 0            ? located_back(back, at, own)
+                 : last->gear == last->first ? GIC_OK
+                                             : part_back(back, last, own);
+    if (status == GIC_OK)
+        happenings_back(back, step);
     if (status == GIC_OK && step->sample >= 0)
         status = sample_back(back, step->sample, weight);
     if (step->look >= 0)
@@ -308,8 +351,12 @@ static Back back_new(TangentRun *run)
                  .sum = pool_alloc(run->pool, state),
                  .from = pool_alloc(run->pool, state),
                  .start_rate = pool_alloc(run->pool, state),
-                 .derivative = pool_alloc(run->pool, ((size_t)run->variables + 1) * sizeof(double)),
-                 .parameter = pool_alloc(run->pool, ((size_t)run->code->parameter_count + 1) * sizeof(double))};
+                 .all_sums = run->variables + run->code->parameter_count + run->happened.clocks + run->scene->profiles};
+    back.sums = pool_alloc(run->pool, ((size_t)back.all_sums + 1) * sizeof(double));
+    back.derivative = back.sums;
+    back.parameter = back.derivative + run->variables;
+    back.clock = back.parameter + run->code->parameter_count;
+    back.present = back.clock + run->happened.clocks;
     const int fast_steps = run->scene->ratio;
     back.moment = pool_alloc(run->pool, ((size_t)fast_steps + 2) * state);
     for (int i = 0; i < 4; ++i)
@@ -321,7 +368,8 @@ static Back back_new(TangentRun *run)
     return back;
 }
 
-int adjoint_find(TangentRun *run, AdjointWeight *weight, const void *context, double *value, double *derivative)
+int adjoint_find(TangentRun *run, AdjointWeight *weight, const void *context, double by_end, double *value,
+                 double *derivative)
 {
     Back back = back_new(run);
     const int64_t steps = trail_steps(run->trail), all = run->steps;
@@ -333,11 +381,12 @@ int adjoint_find(TangentRun *run, AdjointWeight *weight, const void *context, do
     if (weight(context, all) != 0) {
         status = rate_back(&back, &end, back.sum, weight(context, all), NULL);
         memcpy(back.state, run->linear->along.y, (size_t)run->states * sizeof *back.state);
+        clock_back(&back, run->happened.ended ? run->happened.end : -1, end.time);
     }
-    for (int64_t i = steps - 1; i >= 0 && status == GIC_OK; --i) {
-        const TrailStep *step = trail_step(run->trail, i);
-        status = step_back(&back, step, step->number < 0 ? 0 : weight(context, step->number));
-    }
+    if (run->happened.ended && run->happened.end >= 0)
+        back.clock[run->happened.end] += by_end;
+    for (int64_t i = steps - 1; i >= 0 && status == GIC_OK; --i)
+        status = step_back(&back, &i, weight, context);
     if (status != GIC_OK)
         return status;
     settle_back(&back, trail_event(run->trail, 0));

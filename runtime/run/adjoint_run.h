@@ -13,7 +13,9 @@ typedef double AdjointWeight(const void *context, int64_t step);
 extern const double adjoint_most;
 bool adjoint_fits(const Model *model, const Scene *scene);
 /* After tangent_open_backwards(), tangent_begin() and all steps of the scene: the number, and its derivatives
- * [variables]. Returns a status. */
-int adjoint_find(TangentRun *run, AdjointWeight *weight, const void *context, double *value, double *derivative);
+ * [variables]. by_end: of the number by the time at which a condition ends the run, besides what the output has of it.
+ * Returns a status. */
+int adjoint_find(TangentRun *run, AdjointWeight *weight, const void *context, double by_end, double *value,
+                 double *derivative);
 
 #endif

@@ -26,14 +26,26 @@ static void add(Gradient *gradient, double weight, double value, const double *s
         gradient->derivative[k] += weight * slope[k];
 }
 
+/* The trapezium of the last step, of `length` s, which a condition ends; up to now its start has half a whole step.
+ * late: derivatives of the time of the end; NULL: it stays. */
+static void end_integral(Gradient *gradient, double step, double length, double before, const double *slope_before,
+                         double value, const double *slope, const double *late)
+{
+    add(gradient, (length - step) / 2, before, slope_before);
+    add(gradient, length / 2, value, slope);
+    for (int k = 0; late && k < gradient->variables; ++k)
+        gradient->derivative[k] += (before + value) / 2 * late[k];
+}
+
 /* Forwards: as many derivatives in each step as there are variables. */
 static int go_forwards(Gradient *gradient, TangentRun *run, ScalarKind kind, const Scene *scene, double *slope)
 {
-    double value = 0;
+    double value = 0, before = 0, *slope_before = slope + gradient->variables;
     const int64_t steps = scene->outputs * scene->per_output;
+    bool last = steps == 0;
     int status = tangent_begin(run, scene);
-    for (int64_t i = 0; i <= steps && status == GIC_OK; ++i) {
-        const bool first = i == 0, last = i == steps;
+    for (int64_t i = 0; status == GIC_OK; ++i) {
+        const bool first = i == 0;
         if (kind != SCALAR_END || last)
             status = tangent_look(run, &value, slope);
         if (kind == SCALAR_INTEGRAL) {
@@ -44,8 +56,20 @@ static int go_forwards(Gradient *gradient, TangentRun *run, ScalarKind kind, con
             add(gradient, 1, value, slope);
             gradient->time = tangent_time(run);
         }
-        if (status == GIC_OK && !last)
-            status = tangent_step(run);
+        if (status != GIC_OK || last)
+            break;
+        const double start = tangent_time(run), *late;
+        before = value;
+        memcpy(slope_before, slope, (size_t)gradient->variables * sizeof *slope);
+        status = tangent_step(run);
+        const bool ended = tangent_ended(run, &late);
+        last = i + 1 == steps || ended;
+        if (kind == SCALAR_INTEGRAL && status == GIC_OK && ended) {
+            status = tangent_look(run, &value, slope);
+            end_integral(gradient, scene->step, tangent_time(run) - start, before, slope_before, value, slope, late);
+            gradient->time = tangent_time(run);
+            break;
+        }
     }
     return status;
 }
@@ -53,26 +77,32 @@ static int go_forwards(Gradient *gradient, TangentRun *run, ScalarKind kind, con
 /* What the number of a run is of the formula at the ends of steps. */
 typedef struct Sum {
     ScalarKind kind;
-    double step;
+    double step, last;   /* last: length of the last step, s */
     int64_t steps, most; /* most: at whose end it is largest */
 } Sum;
 
 static double weight_of(const void *context, int64_t step)
 {
     const Sum *sum = context;
-    if (sum->kind == SCALAR_INTEGRAL)
-        return (step == 0 || step == sum->steps ? 0.5 : 1) * sum->step;
+    if (sum->kind == SCALAR_INTEGRAL) {
+        const double after = step == sum->steps ? 0 : step == sum->steps - 1 ? sum->last : sum->step;
+        const double before = step == 0 ? 0 : step == sum->steps ? sum->last : sum->step;
+        return (before + after) / 2;
+    }
     return step == (sum->kind == SCALAR_END ? sum->steps : sum->most);
 }
 
 /* Backwards: all derivatives at once. */
 static int go_backwards(Gradient *gradient, TangentRun *run, ScalarKind kind, const Scene *scene)
 {
-    Sum sum = {kind, scene->step, scene->outputs * scene->per_output, 0};
-    double value = 0, most = 0;
+    Sum sum = {kind, scene->step, scene->step, scene->outputs * scene->per_output, 0};
+    double value = 0, most = 0, before = 0, by_end = 0;
+    const double *late;
     int status = tangent_begin(run, scene);
     for (int64_t i = 0; i <= sum.steps && status == GIC_OK; ++i) {
-        if (kind == SCALAR_MAXIMUM)
+        const double start = tangent_time(run);
+        before = value;
+        if (kind == SCALAR_MAXIMUM || (kind == SCALAR_INTEGRAL && scene->actions))
             status = tangent_look(run, &value, NULL);
         if (i == 0 || value > most) {
             most = value;
@@ -82,10 +112,17 @@ static int go_backwards(Gradient *gradient, TangentRun *run, ScalarKind kind, co
             gradient->time = tangent_time(run);
         if (status == GIC_OK && i < sum.steps)
             status = tangent_step(run);
+        if (status == GIC_OK && i < sum.steps && tangent_ended(run, &late)) {
+            sum.steps = i + 1;
+            sum.last = tangent_time(run) - start;
+        }
     }
+    if (kind == SCALAR_INTEGRAL)
+        by_end = (before + value) / 2;
     if (kind != SCALAR_MAXIMUM)
         gradient->time = tangent_time(run);
-    return status == GIC_OK ? adjoint_find(run, weight_of, &sum, &gradient->value, gradient->derivative) : status;
+    return status == GIC_OK ? adjoint_find(run, weight_of, &sum, by_end, &gradient->value, gradient->derivative)
+                            : status;
 }
 
 /* The names of words NAME and NAME=VALUE; value: NAN where there is none. */
@@ -139,7 +176,7 @@ const Gradient *gradient_find(Pool *pool, const Scalar *scalar, const Scene *sce
     const size_t room = (size_t)(gradient->variables + 1) * sizeof(double);
     gradient->derivative = pool_alloc(pool, room);
     const int status = backwards ? go_backwards(gradient, run, scalar->kind, scene)
-                                 : go_forwards(gradient, run, scalar->kind, scene, pool_alloc(pool, room));
+                                 : go_forwards(gradient, run, scalar->kind, scene, pool_alloc(pool, 2 * room));
     if (status != GIC_OK)
         tangent_fail(run, status);
     return gradient;

@@ -18,12 +18,12 @@ typedef enum ScalarKind { SCALAR_END, SCALAR_INTEGRAL, SCALAR_MAXIMUM } ScalarKi
 /* A number of a run: the value of a formula at its end, its integral, or its largest value. */
 typedef struct Scalar {
     ScalarKind kind;
-    const Model *model; /* whose only output is the formula */
+    const Model *model; /* whose outputs are the formula and the conditions of the scene */
 } Scalar;
 
-/* text: a formula of FORMAT.md section 6, alone or as integral(...) or maximum(...), which reads outputs, too. Ends in
- * diag_fail. */
-Scalar scalar_read(Pool *pool, const Model *model, const char *text);
+/* text: a formula of FORMAT.md section 6, alone or as integral(...) or maximum(...), which reads outputs, too; scene: whose
+ * conditions are outputs after it, or NULL. Ends in diag_fail. */
+Scalar scalar_read(Pool *pool, const Model *model, const Scene *scene, const char *text);
 
 /* ---- gradient.c: the run */
 

@@ -208,7 +208,7 @@ static void settle_change(const TangentRun *run, const double *state, double *ch
     change[3 + dependent] = -sum / state[3 + dependent];
 }
 
-/* The changes of the state at the change of gear, and run->rest.late. */
+/* The changes of the state at the change of gear, and run->shift. */
 static int change_parts(TangentRun *run, const Ends *ends, double share, const double *bend, const Guard *guard,
                         double slope)
 {
@@ -225,7 +225,7 @@ static int change_parts(TangentRun *run, const Ends *ends, double share, const d
         if (slope > 0)
             status = guard_slope(run, guard, &own);
         const double later = slope > 0 ? -own / slope : 0;
-        run->rest.late[k] = later * ends->step;
+        run->shift[k] = later * ends->step;
         for (int i = 0; i < run->states; ++i)
             change[i] += later * bend[i];
         *tangent_age(run, change) = 0;
@@ -243,12 +243,11 @@ static int finish(TangentRun *run, const Ends *ends, int parts)
     memcpy(gears_of(run, run->self), gears_of(run, run->copy), 2 * sizeof(int32_t));
     tangent_put(run, tape_array(run->copy, run->code->state_offset), 0,
                 tangent_array(run, run->descriptor.state_offset));
-    run->rest.end = ends->start + ends->step;
-    run->rest.length = run->rest.end - gic_time(run->copy);
-    run->rest.going = true;
+    run->rest =
+        (Rest){.going = true, .start = gic_time(run->copy), .end = ends->start + ends->step, .late = run->shift};
     gic_restart(head, gic_time(run->copy));
     for (int k = 0; k < parts && status == GIC_OK; ++k)
-        status = gic_step(&run->descriptor, run->both, run->rest.length / parts, GIC_RK4);
+        status = gic_step(&run->descriptor, run->both, (run->rest.end - run->rest.start) / parts, GIC_RK4);
     run->rest.going = false;
     head->start_time = kept.start_time;
     head->steps = kept.steps;
@@ -289,10 +288,16 @@ int tangent_shift(TangentRun *run, double start, bool dual, TrailStep *step)
     const Ends ends = {start,     run->both->head.step, run->from, tangent_array(run, run->descriptor.rate_offset), to,
                        rate_there};
     double slope, share;
+    if (run->plain) /* conditions are searched in the gear of the step's start */
+        return GIC_OK;
     memcpy(to, tangent_array(run, run->descriptor.state_offset), (size_t)all * sizeof *to);
     memset(rate_there, 0, sizeof rate_there);
     if (changes_at(run, &ends, 1) != 1)
         return GIC_OK;
+    if (run->rest.going) {
+        run->happened.failed = "a change of gear before a condition becomes true in the same step";
+        return GIC_ERROR_EVENTS;
+    }
     int status = run->descriptor.rhs(run->both, now, to, rate_there);
     if (status == GIC_OK)
         status = locate(run, &ends, &share);

@@ -9,6 +9,7 @@
 #include "run/tangent_run.h"
 #include "run/trail.h"
 #include "scene/driver.h"
+#include "scene/profile.h"
 
 /* The instance of both: a head, then the arrays of the descriptor. */
 typedef struct Both {
@@ -16,13 +17,46 @@ typedef struct Both {
     const TangentRun *run;
 } Both;
 
-/* The rest of a step after a change of gear: where the change comes later by 1 s, all in it is later by the share of
- * `length` that is left, and rates act for 1 s less in `length`. */
+/* A piece of a step whose ends come later by some variable: evaluations in it come later by what lies between, and
+ * rates act for the longer. After a change of gear it is the rest of the step, whose end stays. */
 typedef struct Rest {
     bool going;
-    double end, length; /* s */
-    double *late;       /* [carried] derivatives of the time of the change */
+    double start, end;          /* s */
+    const double *late, *later; /* [carried] derivatives of both by each variable; NULL: they stay */
+    double *by_late, *by_later; /* backwards: derivatives of the run's number by both; NULL: they stay */
 } Rest;
+
+/* A profile that has begun when a condition became true. */
+typedef struct Begun {
+    bool has;
+    int clock;           /* of its start; -1: the time stays */
+    const Profile *unit; /* what it changes by where the value that it began from is more by 1; NULL: nothing */
+    double *present;     /* [carried] derivatives of that value */
+} Begun;
+
+/* A change of an input, for the way back. */
+typedef struct Happening {
+    int profile; /* of the scene */
+    double time; /* s */
+    Profile before;
+    Begun begun; /* as it was before */
+    int clock;
+} Happening;
+
+/* What conditions and contacts do to a run (tangent_event.c). */
+typedef struct Happened {
+    int conditions; /* the first outputs after those that are looked at */
+    bool ended;     /* the run, by a condition */
+    int end;        /* clock of its end; -1: its time stays */
+    double **clock; /* [clocks][carried] times that come later, by each variable */
+    int clocks;
+    Begun *begun; /* [profiles] */
+    Happening *happening;
+    int happenings;
+    const char *failed;          /* what of it has no derivative; NULL: all has */
+    struct Saved *start, *inner; /* work: where a step and a piece begin */
+    double *fixed, *longer;      /* work: [all of the state] */
+} Happened;
 
 /* How what a driver keeps changes by a variable. */
 typedef struct DriveSlope {
@@ -44,8 +78,11 @@ struct TangentRun {
     int variables, carried; /* carried: whose derivatives are in the state: all of them, or backwards none */
     RunVariable *variable;
     bool shifted; /* the run ended where a gear changes in a way that has no derivative */
+    bool plain;   /* without derivatives for now, to search for something */
     double *from; /* state of both where the step began */
     Rest rest;
+    double *shift; /* [carried] derivatives of the time at which a gear changes */
+    Happened happened;
     int states, inputs, outputs; /* of the vehicle */
     Trail *trail;                /* NULL: forwards */
     int64_t steps;               /* of the run, so far */
@@ -68,6 +105,36 @@ double *tangent_array(const TangentRun *run, size_t offset);
  */
 void tangent_note(const TangentRun *run, TrailKind kind, double time, const double *first, int firsts,
                   const double *second, int seconds);
+/* On to `time` by parts of RK4, without a past. next: of the trail, what was before the first one and the piece that
+ * all are of; afterwards a step that begins with nothing. Returns a status. */
+int tangent_parts_to(TangentRun *run, double time, int parts, TrailStep *next);
+/* True if what comes at `at` is before the end, but for rounding. */
+bool tangent_is_before(const TangentRun *run, double at, double end);
+/* Inputs of both at a time. */
+void tangent_set_inputs(TangentRun *run, double time);
+/* linear->drate: derivatives along variable k of a vehicle that has just been evaluated, of the rate and behind it of
+ * the first outputs; state: of both. Returns a status. */
+int tangent_slope(const TangentRun *run, const double *state, int k, int outputs);
+
+/* tangent_event.c: before and after a step of the run, whose trail begins with `next`: what happens as conditions
+ * become true in it. Both return a status, GIC_ERROR_EVENTS or GIC_ERROR_RESULT with happened.failed where that has no
+ * derivative. */
+int tangent_events_begin(TangentRun *run);
+void tangent_events_before(TangentRun *run, const TrailStep *next);
+int tangent_events_after(TangentRun *run);
+/* Once, before the first run of it. conditions: how many outputs of the model are conditions of the scene. */
+void tangent_events_open(TangentRun *run, int conditions);
+/* How inputs change by variable k as profiles have begun later, or from other values. */
+void tangent_begun_inputs(const TangentRun *run, int k, double time, double *change);
+/* True if the input follows a profile that a condition has begun. */
+bool tangent_has_begun(const TangentRun *run, int input);
+/* True if knots of driven coordinates are at times that move: steps go over them. */
+bool tangent_knots_move(const TangentRun *run);
+/* Derivatives of a clock; NULL: of one that stays. */
+const double *tangent_clock(const TangentRun *run, int clock);
+/* Of what follows a profile (value, rate, acceleration) the derivatives by time. */
+void tangent_profile_rates(const Profile *profile, double time, double rate[3]);
+
 /* State and inputs of the vehicle now: own[states + inputs]. */
 void tangent_state(const TangentRun *run, double *own);
 /* Dependent Euler parameter and gears of an event, as the vehicle has them. */

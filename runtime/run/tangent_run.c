@@ -11,6 +11,7 @@
 #include "engine/engine.h"
 #include "gic_runtime.h"
 #include "host/host.h"
+#include "run/condition_output.h"
 #include "run/engines.h"
 #include "run/formula_blame.h"
 #include "run/knot.h"
@@ -170,18 +171,23 @@ static double jerk_of(const Profile *profile, double time)
     return (-11 * at[0][2] + 18 * at[1][2] - 9 * at[2][2] + 2 * at[3][2]) / (6 * side);
 }
 
+void tangent_profile_rates(const Profile *profile, double time, double rate[3])
+{
+    double at[3];
+    profile_at(profile, time, at);
+    rate[0] = at[1];
+    rate[1] = at[2];
+    rate[2] = profile->driven ? jerk_of(profile, time) : 0;
+}
+
 void tangent_input_rates(const TangentRun *run, double time, double *rate)
 {
     memset(rate, 0, (size_t)run->inputs * sizeof *rate);
     for (int i = 0; i < run->scene->profiles; ++i) {
         const Profile *profile = &run->scene->profile[i];
         double at[3];
-        profile_at(profile, time, at);
-        rate[profile->input] = at[1];
-        if (!profile->driven)
-            continue;
-        rate[profile->input + 1] = at[2];
-        rate[profile->input + 2] = jerk_of(profile, time);
+        tangent_profile_rates(profile, time, at);
+        memcpy(rate + profile->input, at, (size_t)profile_orders(profile) * sizeof *rate);
     }
     if (!run->scene->driver)
         return;
@@ -207,7 +213,8 @@ static void inputs_of_both(void *user, int32_t lane, double time, double *input)
         memset(change, 0, (size_t)run->inputs * sizeof *change);
         if (run->scene->driver)
             tangent_drive_inputs(run, k, time, change);
-        if (v->kind != BY_INPUT)
+        tangent_begun_inputs(run, k, time, change);
+        if (v->kind != BY_INPUT || tangent_has_begun(run, v->index))
             continue;
         const int count = tangent_input(v, time, at);
         memcpy(change + v->index, at, (size_t)count * sizeof *at);
@@ -265,10 +272,12 @@ void tangent_go(const TangentRun *run, const TrailEvent *event)
         discrete[base + i] = event->gear[i];
 }
 
-/* What is left of a step after a change of gear ends when it did, and has less time where the change comes later. */
+/* Where the ends of a piece come later, so does a time within it. */
 static void point_later(const TangentRun *run, int k, double time)
 {
-    const double late = (run->rest.end - time) / run->rest.length * run->rest.late[k];
+    const Rest *rest = &run->rest;
+    const double share = (time - rest->start) / (rest->end - rest->start);
+    const double late = (1 - share) * (rest->late ? rest->late[k] : 0) + share * (rest->later ? rest->later[k] : 0);
     double rate[run->inputs + 1];
     tangent_input_rates(run, time, rate);
     for (int i = 0; i < run->inputs; ++i)
@@ -276,8 +285,7 @@ static void point_later(const TangentRun *run, int k, double time)
     *run->linear->along.time = late;
 }
 
-/* Derivatives along variable k, into linear->drate, of a vehicle that has just been evaluated; state: of both. */
-static int slope_along(const TangentRun *run, const double *state, int k, int outputs)
+int tangent_slope(const TangentRun *run, const double *state, int k, int outputs)
 {
     tangent_point(run, k);
     tangent_take(run, state, 1 + k, run->linear->along.y);
@@ -307,7 +315,7 @@ void tangent_discrete(const TangentRun *run, TrailEvent *event)
 void tangent_note(const TangentRun *run, TrailKind kind, double time, const double *first, int firsts,
                   const double *second, int seconds)
 {
-    if (!run->trail)
+    if (!run->trail || run->plain)
         return;
     const int inputs = kind == TRAIL_SETTLED ? 0 : run->inputs;
     TrailEvent *event = trail_add(run->trail, firsts + seconds + inputs);
@@ -320,6 +328,18 @@ void tangent_note(const TangentRun *run, TrailKind kind, double time, const doub
            (size_t)inputs * sizeof *number);
 }
 
+/* Variables whose derivatives are wanted now. */
+static int carried_now(const TangentRun *run)
+{
+    return run->plain ? 0 : run->carried;
+}
+
+/* By which share of itself a piece is longer, by variable k. */
+static double longer_by(const Rest *rest, int k)
+{
+    return ((rest->later ? rest->later[k] : 0) - (rest->late ? rest->late[k] : 0)) / (rest->end - rest->start);
+}
+
 static int rate_of_both(void *self, double time, const double *state, double *rate)
 {
     const TangentRun *run = ((Both *)self)->run;
@@ -328,11 +348,14 @@ static int rate_of_both(void *self, double time, const double *state, double *ra
     tangent_take(run, state, 0, own);
     tangent_note(run, TRAIL_RATE, time, own, run->states, own, 0);
     int status = run->code->rhs(run->self, time, own, found);
+    if (run->plain)
+        memset(rate, 0, (size_t)(run->descriptor.slow_count + run->descriptor.fast_count) * sizeof *rate);
     tangent_put(run, found, 0, rate);
-    for (int k = 0; k < run->carried && status == GIC_OK; ++k) {
-        status = slope_along(run, state, k, 0);
+    for (int k = 0; k < carried_now(run) && status == GIC_OK; ++k) {
+        status = tangent_slope(run, state, k, 0);
+        const double longer = longer_by(&run->rest, k);
         for (int i = 0; i < run->states && run->rest.going; ++i)
-            run->linear->drate[i] -= run->rest.late[k] / run->rest.length * found[i];
+            run->linear->drate[i] += longer * found[i];
         tangent_put(run, run->linear->drate, 1 + k, rate);
     }
     return status;
@@ -348,7 +371,7 @@ static int links_of_both(void *self, double time, const double *slow, double *li
     memcpy(own, slow, (size_t)code->slow_count * sizeof *own);
     tangent_note(run, TRAIL_LINKS, time, own, run->states, own, 0);
     int status = code->link(run->self, time, own, link);
-    for (int k = 0; k < run->carried && status == GIC_OK; ++k) {
+    for (int k = 0; k < carried_now(run) && status == GIC_OK; ++k) {
         tangent_point(run, k);
         memcpy(run->linear->along.y, slow + code->slow_count * (1 + k), (size_t)code->slow_count * sizeof *slow);
         status = linear_slope(run->linear, run->self, LINEAR_LINKS, 0);
@@ -368,7 +391,7 @@ static int fast_of_both(void *self, double time, const double *link, const doubl
     memcpy(own, fast, states);
     tangent_note(run, TRAIL_FAST, time, fast, code->fast_count, link, code->link_count);
     int status = code->fast(run->self, time, link, fast, rate);
-    for (int k = 0; k < run->carried && status == GIC_OK; ++k) {
+    for (int k = 0; k < carried_now(run) && status == GIC_OK; ++k) {
         tangent_point(run, k);
         memcpy(linear->along.y + code->slow_count, fast + code->fast_count * (1 + k), states);
         memcpy(linear->link[0], link, links);
@@ -435,7 +458,7 @@ static void make_both(TangentRun *run)
     model->size = at;
     run->both = pool_alloc(run->pool, at);
     run->from = pool_alloc(run->pool, (all + 1) * sizeof(double));
-    run->rest.late = pool_alloc(run->pool, (size_t)parts * sizeof(double));
+    run->shift = pool_alloc(run->pool, (size_t)parts * sizeof(double));
     memset(run->both, 0, at);
     run->both->run = run;
     run->both->head.subset = run->both->head.condition = run->both->head.grown = -1;
@@ -447,7 +470,7 @@ static void make_both(TangentRun *run)
 /* ---- the run ------------------------------------------------------------------------------------------------ */
 
 /* Refuse what steps alone do not make. */
-static void check_scene(Pool *pool, const Scene *scene)
+static void check_scene(Pool *pool, const Model *model, const Scene *scene)
 {
     const Place at = {scene->source, 0, 0};
     const struct {
@@ -456,7 +479,7 @@ static void check_scene(Pool *pool, const Scene *scene)
     } refused[] = {
         {scene->method >= METHOD_ADAMS, "steps vary", "choose `integrator: rk4` or `ab3` and a `step`"},
         {scene->steady > 0, "fast states take longer steps where they are steady", "leave `steady` out"},
-        {scene->actions, "conditions change the run", "leave `until` and `when` out"},
+        {condition_count(scene) != condition_has(model), "conditions change the run", "leave `until` and `when` out"},
         {scene->rest, "the vehicle may sleep", "leave `sleep` out"},
         {scene->locate, "steps end where contacts begin and end", "`locate: false`"},
     };
@@ -483,6 +506,9 @@ static void check_names(const TangentRun *run, const char *const *wanted, int co
 
 void tangent_fail(const TangentRun *run, int status)
 {
+    if (run->happened.failed)
+        diag_fail((Place){run->scene->source, 0, 0}, "another threshold or `step`, or take it out of the scene",
+                  "%s at t = %.6g s has no derivative", run->happened.failed, tangent_time(run));
     if (run->shifted)
         diag_fail((Place){run->scene->source, 0, 0}, "other speeds of `up` and `down`, or another `step`",
                   "two changes of gear in the step to t = %.6g s, or one right at its end, have no derivatives",
@@ -516,7 +542,7 @@ static int own_outputs(const Model *model)
 static TangentRun *open(Pool *pool, const Model *model, const Scene *scene, Solve solve, const char *const *wanted,
                         int count, bool backwards)
 {
-    check_scene(pool, scene);
+    check_scene(pool, model, scene);
     TangentRun *run = pool_alloc(pool, sizeof *run);
     const Engine *engine = engine_open(pool, "tape", model, &(EngineOptions){.solve = solve, .quiet = true});
     *run = (TangentRun){.pool = pool,
@@ -528,7 +554,7 @@ static TangentRun *open(Pool *pool, const Model *model, const Scene *scene, Solv
                         .code = engine->code,
                         .self = (Instance *)(void *)instance_new(pool, engine),
                         .copy = (Instance *)(void *)instance_new(pool, engine),
-                        .outputs = own_outputs(model),
+                        .outputs = own_outputs(model) - condition_has(model),
                         .states = engine->code->slow_count + engine->code->fast_count,
                         .inputs = engine->code->input_count};
     double f[run->linear->count + 1];
@@ -545,6 +571,7 @@ static TangentRun *open(Pool *pool, const Model *model, const Scene *scene, Solv
     run->live = pool_alloc(pool, (size_t)run->states + 1);
     run->drive = pool_alloc(pool, ((size_t)run->carried + 1) * sizeof *run->drive);
     make_both(run);
+    tangent_events_open(run, condition_has(model));
     return run;
 }
 
@@ -566,6 +593,12 @@ int tangent_variables(const TangentRun *run, const RunVariable **variable)
     return run->variables;
 }
 
+bool tangent_ended(const TangentRun *run, const double **late)
+{
+    *late = tangent_clock(run, run->happened.end);
+    return run->happened.ended;
+}
+
 double tangent_time(const TangentRun *run)
 {
     return run->both ? gic_time(run->both) : 0;
@@ -576,7 +609,7 @@ int tangent_begin(TangentRun *run, const Scene *scene)
     double *state = tangent_array(run, run->descriptor.state_offset);
     double *input = tangent_array(run, run->descriptor.input_offset);
     run->scene = scene;
-    run->shifted = run->rest.going = false;
+    run->shifted = run->rest.going = run->plain = false;
     run->steps = 0;
     memset(run->live, 0, (size_t)run->states);
     memset(run->drive, 0, (size_t)run->carried * sizeof *run->drive);
@@ -598,7 +631,7 @@ int tangent_begin(TangentRun *run, const Scene *scene)
     memcpy(input, tape_array(run->self, run->code->input_offset),
            (size_t)run->inputs * sizeof *input); /* profiles set those that they are of */
     inputs_of_both(run, 0, 0, input);
-    return status;
+    return status == GIC_OK ? tangent_events_begin(run) : status;
 }
 
 int tangent_look(TangentRun *run, double *value, double *slope)
@@ -608,11 +641,16 @@ int tangent_look(TangentRun *run, double *value, double *slope)
     tangent_take(run, state, 0, tape_array(run->self, run->code->state_offset));
     int status = run->code->outputs(run->self);
     memcpy(value, tape_array(run->self, run->code->output_offset), (size_t)run->outputs * sizeof *value);
+    if (run->happened.ended && run->happened.end >= 0) {
+        const double *late = tangent_clock(run, run->happened.end), end = gic_time(run->both);
+        run->rest = (Rest){.going = true, .start = end - 1, .end = end, .late = late, .later = late};
+    }
     for (int k = 0; k < run->carried && status == GIC_OK; ++k) {
-        status = slope_along(run, state, k, run->outputs);
+        status = tangent_slope(run, state, k, run->outputs);
         for (int i = 0; i < run->outputs; ++i)
             slope[i * run->variables + k] = run->linear->drate[run->states + i];
     }
+    run->rest.going = false;
     return status;
 }
 
@@ -632,7 +670,7 @@ static int advance(TangentRun *run, double h, int32_t method, bool dual, const T
 {
     gic_head *head = &run->both->head;
     const double start = gic_time(head);
-    TrailStep *step = run->trail ? trail_add_step(run->trail) : NULL;
+    TrailStep *step = run->trail && !run->plain ? trail_add_step(run->trail) : NULL;
     if (step) {
         *step = *next;
         step->start = start;
@@ -654,24 +692,40 @@ static int advance(TangentRun *run, double h, int32_t method, bool dual, const T
     return status;
 }
 
+void tangent_set_inputs(TangentRun *run, double time)
+{
+    inputs_of_both(run, 0, time, tangent_array(run, run->descriptor.input_offset));
+}
+
+int tangent_parts_to(TangentRun *run, double time, int parts, TrailStep *next)
+{
+    const double length = time - gic_time(run->both);
+    int status = GIC_OK;
+    for (int i = 0; i < parts && status == GIC_OK; ++i) {
+        TrailStep after = trail_part;
+        after.piece_start = next->piece_start;
+        after.piece_end = next->piece_end;
+        after.late = next->late;
+        after.later = next->later;
+        after.piece = next->piece;
+        status = advance(run, length / parts, GIC_RK4, false, next);
+        *next = after;
+    }
+    *next = trail_part;
+    gic_restart(run->both, time);
+    tangent_set_inputs(run, time);
+    return status;
+}
+
 /* To a time within a step, as the runtime core goes to samples. */
 static int part_to(TangentRun *run, double time, TrailStep *next)
 {
     const double length = time - gic_time(run->both),
                  fast_step = run->scene->step / tangent_parts(run, tangent_dual(run));
-    const int parts = 1 + (int)(0.999 * length / fast_step);
-    int status = GIC_OK;
-    for (int i = 0; i < parts && status == GIC_OK; ++i) {
-        status = advance(run, length / parts, GIC_RK4, false, next);
-        *next = (TrailStep){.number = -1, .look = -1, .sample = -1};
-    }
-    gic_restart(run->both, time);
-    inputs_of_both(run, 0, time, tangent_array(run, run->descriptor.input_offset));
-    return status;
+    return tangent_parts_to(run, time, 1 + (int)(0.999 * length / fast_step), next);
 }
 
-/* True if what comes at `at` is before the end, but for rounding. */
-static bool is_before(const TangentRun *run, double at, double end)
+bool tangent_is_before(const TangentRun *run, double at, double end)
 {
     double same = 0;
     for (int c = 0; c < run->code->controller_count; ++c)
@@ -689,11 +743,14 @@ int tangent_step(TangentRun *run)
     const double start = gic_time(head), end = first + (double)steps * h;
     const int history = head->history;
     const bool samples = run->code->controller_count > 0;
-    TrailStep next = {.number = run->steps++, .look = tangent_drive_look(run), .sample = -1};
+    TrailStep next = trail_part;
+    next.number = run->steps++;
+    next.look = tangent_drive_look(run);
     double at = INFINITY;
     int status = samples ? tangent_sample(run, &next.sample, &at) : GIC_OK, count = 0;
     head->parted = 0;
-    while (status == GIC_OK && is_before(run, at, end)) {
+    tangent_events_before(run, &next);
+    while (status == GIC_OK && tangent_is_before(run, at, end)) {
         head->parted = 1;
         status = count++ < GIC_SAMPLES ? part_to(run, at, &next) : GIC_ERROR_EVENTS;
         if (status == GIC_OK)
@@ -711,9 +768,9 @@ int tangent_step(TangentRun *run)
         head->method = run->scene->method;
         head->ratio = tangent_parts(run, dual);
     }
-    if (status == GIC_OK)
+    if (status == GIC_OK && !tangent_knots_move(run))
         status = knots_cross(&run->descriptor, run->scene, head, start, history);
     if (run->trail)
         trail_last(run->trail)->end = trail_events(run->trail);
-    return status;
+    return status == GIC_OK ? tangent_events_after(run) : status;
 }

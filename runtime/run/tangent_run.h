@@ -24,9 +24,10 @@ typedef struct RunVariable {
 
 typedef struct TangentRun TangentRun;
 
-/* wanted, count: names of variables, or `initial`, `parameter`, `input` for all of a kind; 0: all. The scene starts as
- * it says, not in equilibrium. Ends in diag_fail for scenes that can not be differentiated, or in diag_fail_call for
- * names that are none. */
+/* model: with condition_outputs() of the scene, after which those that controllers read may come; else conditions are
+ * refused. wanted, count: names of variables, or `initial`, `parameter`, `input` for all of a kind; 0: all. The scene
+ * starts as it says, not in equilibrium. Ends in diag_fail for scenes that can not be differentiated, or in
+ * diag_fail_call for names that are none. */
 TangentRun *tangent_open(Pool *pool, const Model *model, const Scene *scene, Solve solve, const char *const *wanted,
                          int count);
 /* The same for the way back: steps have no derivatives, and leave a trail for adjoint_run.h. */
@@ -35,10 +36,13 @@ TangentRun *tangent_open_backwards(Pool *pool, const Model *model, const Scene *
 int tangent_variables(const TangentRun *run, const RunVariable **variable);
 /* Time 0 of the scene that it was opened for, which may have other initial values and parameters now. */
 int tangent_begin(TangentRun *run, const Scene *scene);
-/* A step of it. All of these return a status. */
+/* A step of it, or less where a condition ends the run. All of these return a status. */
 int tangent_step(TangentRun *run);
 /* The model's outputs now, and their derivatives [outputs][variables], none of those on the way back. */
 int tangent_look(TangentRun *run, double *value, double *slope);
+/* True if a condition has ended the run, for which no more steps are made. *late: derivatives of its time by all
+ * variables, none of those on the way back; NULL: it stays. */
+bool tangent_ended(const TangentRun *run, const double **late);
 double tangent_time(const TangentRun *run);
 /* End with the message of a status. */
 _Noreturn void tangent_fail(const TangentRun *run, int status);

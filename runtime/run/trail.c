@@ -4,6 +4,9 @@
 
 #include <stddef.h>
 
+const TrailStep trail_part = {
+    .number = -1, .look = -1, .sample = -1, .late = -1, .later = -1, .guard = -1, .condition = -1};
+
 enum { CHUNK_EVENTS = 1 << 10, CHUNK_NUMBERS = 1 << 16 };
 
 struct Trail {
@@ -26,6 +29,19 @@ Trail *trail_new(Pool *pool)
 void trail_begin(Trail *trail)
 {
     trail->events = trail->part = trail->used = trail->steps = 0;
+}
+
+TrailMark trail_mark(const Trail *trail)
+{
+    return (TrailMark){trail->events, trail->part, trail->used, trail->steps};
+}
+
+void trail_rewind(Trail *trail, const TrailMark *mark)
+{
+    trail->events = mark->events;
+    trail->part = mark->part;
+    trail->used = mark->used;
+    trail->steps = (int)mark->steps;
 }
 
 static double *numbers(Trail *trail, int count)

@@ -29,7 +29,7 @@ typedef struct TrailEvent {
 } TrailEvent;
 
 /* A step, or a part of one: which events are its own, then those of a change of gear, if one changes, and those of
- * knots. */
+ * knots. Parts of a piece (tangent_event.c) have its ends, and the clocks of these. */
 typedef struct TrailStep {
     double start, length; /* s */
     bool dual;            /* fast states took steps of their own */
@@ -38,11 +38,27 @@ typedef struct TrailStep {
     int32_t history;      /* past rates with which it began */
     double share;         /* of the step, where a gear changes */
     int first, gear, knots, end;
+    double piece_start, piece_end; /* s */
+    int late, later;               /* clocks of the start and the end of the piece; -1: their times stay */
+    int64_t piece;                 /* the first step of the trail in the piece */
+    int guard, condition;          /* event and number of what decides on the piece's end; -1: its time stays */
+    int happens, happened;         /* changes of inputs at its start: the first one and the one after the last */
 } TrailStep;
+
+/* The step that begins with nothing. */
+extern const TrailStep trail_part;
 
 typedef struct Trail Trail;
 
 Trail *trail_new(Pool *pool);
+/* A place in a trail, to which it can be taken back. */
+typedef struct TrailMark {
+    int events, part, used;
+    int64_t steps;
+} TrailMark;
+
+TrailMark trail_mark(const Trail *trail);
+void trail_rewind(Trail *trail, const TrailMark *mark);
 /* A new trail in the same memory. */
 void trail_begin(Trail *trail);
 /* One more event with room for so many numbers, for the caller to fill; it stays where it is. */

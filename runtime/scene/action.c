@@ -87,19 +87,25 @@ double action_value(const Action *action, const Scene *scene, const gic_model *c
     return value_of(&(View){scene, code, self, standard, slow, slow / 2}, action->law);
 }
 
-/* A profile that takes over from `before` at `time`, where the input is `present`: value and, if driven, rate. */
-static void change_profile(Pool *pool, const Change *change, Profile *before, double time, const double *present)
+Profile action_profile(Pool *pool, const Change *change, const Profile *before, double time, double present)
 {
-    const double roundings = 1e-9;
     Profile now = {.input = before->input,
                    .driven = before->driven,
                    .unit = before->unit,
-                   .offset = present[0],
+                   .offset = present,
                    .end = before->until - time,
                    .until = before->until,
                    .model = before->model};
     profile_read(pool, change->item, change->name, &now);
     now.begin = time;
+    return now;
+}
+
+/* A profile that takes over from `before` at `time`, where the input is `present`: value and, if driven, rate. */
+static void change_profile(Pool *pool, const Change *change, Profile *before, double time, const double *present)
+{
+    const double roundings = 1e-9;
+    const Profile now = action_profile(pool, change, before, time, present[0]);
     double first[3];
     profile_at(&now, time, first);
     for (int k = 0; k < 2 && before->driven; ++k)

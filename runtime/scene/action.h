@@ -8,6 +8,7 @@
 #include "engine/engine.h"
 #include "gic_runtime.h"
 #include "model/model.h"
+#include "scene/profile.h"
 #include "scene/scene.h"
 
 /* An input's new profile: the item that describes it is read again when it starts, for it may begin from the value that
@@ -49,6 +50,8 @@ double action_value(const Action *action, const Scene *scene, const gic_model *c
                     const double *standard, int slow);
 /* Execute the action at the instance's time, with its inputs up to date. */
 void action_start(Pool *pool, Action *action, const Scene *scene, const double *input);
+/* The profile that a change begins at `time` (s), in place of `before`, where the input is `present`. */
+Profile action_profile(Pool *pool, const Change *change, const Profile *before, double time, double present);
 /* Clear the marks of the inputs that actions change. */
 void actions_move(const Scene *scene, bool *fixed);
 /* May inputs still change by an action? */

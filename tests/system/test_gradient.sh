@@ -51,8 +51,6 @@ scene 'integrator: rkck\noutput_step: 0.1'
 mistake 1 'a run in which steps vary' --gradient chassis.x "$car" "$work/bad.scene"
 scene 'step: 0.005\nratio: 5\nsteady: 1e-6'
 mistake 1 'fast states take longer steps where they are steady' --gradient chassis.x "$tires" "$work/bad.scene"
-scene 'step: 0.005\nuntil: time > 0.5'
-mistake 1 'conditions change the run' --gradient chassis.x "$car" "$work/bad.scene"
 scene 'step: 0.005\nsleep: {}'
 mistake 1 'the vehicle may sleep' --gradient chassis.x "$car" "$work/bad.scene"
 scene 'step: 0.005\nlocate: true'

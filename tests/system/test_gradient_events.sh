@@ -1,0 +1,26 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# test_gradient_events.sh GICRUN: gradients of runs in which conditions become true (tests/vehicle/gradient_events.py), and what of them has none.
+gicrun=$1
+root=$(cd "$(dirname "$0")/../.." && pwd)
+# shellcheck source=tests/lib/checking.sh
+. "$root/tests/lib/checking.sh"
+models=$root/models
+/usr/bin/python3 -B "$root/tests/vehicle/gradient_events.py" "$gicrun" "$models" "$work" >"$work/said" 2>&1
+verdict $? "gradients of runs with conditions"
+tail -n 1 "$work/said"
+
+# ---- what is refused
+rm -f "$work"/no.*
+ends() { exits 1 && says "$1" && [ ! -e "$work/no.csv" ]; }
+ball=$work/ball.veh # which gradient_events.py left
+printf 'time [s],ball.x [m]\n1,0.4\n2,0.1\n' >"$work/m.csv"
+printf 'gicscene: 1\nduration: 2\nstep: 0.01\nuntil: "x > 1"\n' >"$work/bad.scene"
+run --identify "$work/m.csv" "$ball" "$work/bad.scene" initial/x
+check 'conditions are no part of what is identified' ends 'a run in which conditions change the run'
+sed 's/^duration: .*/duration: 0.5\nwhen: [{if: "time > 0.2", target: 5}]/; s/^equilibrium.*//' "$models/scenes/lane_change.scene" >"$work/target.scene"
+run --gradient chassis.x "$models/hmmwv_vehicle.veh" "$work/target.scene" initial/x.rate -o "$work/no.csv"
+check 'a target that begins' ends 'a `target` of the driver that begins as a condition becomes true at t = 0.2'
+
+echo "$passed passed, $failed failed"
+[ "$failed" -eq 0 ]

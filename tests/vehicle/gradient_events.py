@@ -1,0 +1,194 @@
+# SPDX-License-Identifier: MIT
+"""gradient_events.py GICRUN MODELS WORK: gradients of runs that `until` ends and in which `when` changes inputs. A ball that is thrown
+and carts in closed form, forwards and backwards; vehicles by Taylor remainders, and both ways against each other."""
+import math
+from pathlib import Path
+
+from counted import check, finish, near
+from gradient_tools import both_ways, gic, gradient, models, taylor, work
+
+# ---- a ball: time of flight and range -----------------------------------------------------------------------------------------
+
+ball = f"{work}/ball.veh"
+Path(ball).write_text("""gicgen: 1
+model: ball
+gravity: [0, 0, "-g"]
+base: ground
+parameters:
+  g: {value: 10, unit: m/s^2, tunable: true}
+  m: {value: 2, unit: kg, tunable: true}
+  level: {value: 0, unit: m, tunable: true}
+inputs:
+  push: {unit: N}
+bodies:
+  slide: {mass: 1, com: [0, 0, 0], inertia: [1, 1, 1]}
+  ball: {mass: m, com: [0, 0, 0], inertia: [1, 1, 1]}
+joints:
+  rail: {type: prismatic, bodies: [ground, slide], axis: [1, 0, 0]}
+  mast: {type: prismatic, bodies: [slide, ball], axis: [0, 0, 1]}
+coordinates:
+  x: {type: translation, bodies: [ground, slide], axis: [1, 0, 0], range: [-1000, 1000]}
+  z: {type: translation, bodies: [slide, ball], axis: [0, 0, 1], range: [-1000, 1000]}
+forces:
+  wind: {type: force, coordinate: x, value: "push"}
+outputs:
+  ball: {type: position, body: ball}
+""")
+names = ["initial/x", "initial/z", "initial/x.rate", "initial/z.rate", "parameter/g", "parameter/m", "parameter/level", "input/push"]
+
+
+def thrown(step, method, x, z, vx, vz, until="ball.z < level"):
+    path = f"{work}/ball.scene"
+    Path(path).write_text(f"gicscene: 1\nduration: 60\nstep: {step}\nintegrator: {method}\n"
+                          f"initial: {{coordinates: {{x: {x!r}, z: {z!r}}}, rates: {{x: {vx!r}, z: {vz!r}}}}}\nuntil: \"{until}\"\n")
+    return path
+
+
+for method, step, x, z, vx, vz in (("rk4", 0.03, 0, 0.5, 3, 4), ("ab3", 0.01, 0, 0, 5, 5), ("rk4", 0.1, 1, 0, 1, 4), ("rk4", 0.1, 0, 0, 1, 0.01),
+                                   ("ab3", 0.25, 0, 1, 1, 0), ("rk4", 0.5, 0, 8, 3, 2), ("rk4", 0.1, 0, 5, 0, 0), ("ab3", 0.2, 0, 0, 1, 1),
+                                   ("rk4", 0.05, 0, 0, 10, 1e-3)):
+    root = math.sqrt(vz * vz + 20 * z)  # of g = 10; acceleration along x is 0, changed by push / (m + 1)
+    T = (vz + root) / 10
+    by = {"initial/x": 0, "initial/z": 1 / root, "initial/x.rate": 0, "initial/z.rate": T / root, "parameter/g": -T * T / 2 / root, "parameter/m": 0,
+          "parameter/level": -1 / root, "input/push": 0}
+    path = thrown(step, method, x, z, vx, vz)
+    what = f"a ball, {method}, {step}, {x, z, vx, vz}"
+    for chosen in ([], *([n] for n in names[:1] + names[3:5])):
+        value, d = gradient("time", ball, path, *chosen)
+        near(f"{what}: time of flight", value, T, 1e-12)
+        for name in d:
+            near(f"{what}: time by {name}", d[name], by[name], 2e-11 * max(1, abs(by[name])))
+        value, d = gradient("ball.x", ball, path, *chosen)
+        near(f"{what}: range", value, x + vx * T, 1e-11 * max(1, abs(vx * T)))
+        for name in d:
+            wanted = vx * by[name] + {"initial/x": 1, "initial/x.rate": T, "input/push": T * T / 2 / 3}.get(name, 0)
+            near(f"{what}: range by {name}", d[name], wanted, 2e-11 * max(1, abs(wanted)))
+        value, d = gradient("integral(ball.x)", ball, path, *chosen)  # x is linear in time, so the trapezium is exact
+        near(f"{what}: integral", value, x * T + vx * T * T / 2, 1e-11 * max(1, abs(vx * T * T)))
+        for name in d:
+            wanted = (x + vx * T) * by[name] + {"initial/x": T, "initial/x.rate": T * T / 2}.get(name, 0)
+            if name != "input/push":
+                near(f"{what}: integral by {name}", d[name], wanted, 2e-11 * max(1, abs(wanted)))
+v = 10.0  # the range v^2 / g sin(2 a) by speed and angle: at 45 degrees the angle is the best
+for angle in (30, 45, 60):
+    a = math.radians(angle)
+    value, d = gradient("ball.x", ball, thrown(0.05, "rk4", 0, 0, v * math.cos(a), v * math.sin(a)))
+    near(f"{angle} degrees: range", value, v * v / 10 * math.sin(2 * a), 1e-11)
+    by_speed = d["initial/x.rate"] * math.cos(a) + d["initial/z.rate"] * math.sin(a)
+    by_angle = v * (d["initial/z.rate"] * math.cos(a) - d["initial/x.rate"] * math.sin(a))
+    near(f"{angle} degrees: range by speed", by_speed, 2 * v / 10 * math.sin(2 * a), 1e-11)
+    near(f"{angle} degrees: range by angle", by_angle, 2 * v * v / 10 * math.cos(2 * a), 1e-10)
+# a time that is given stays; one that comes by a parameter moves
+value, d = gradient("ball.x", ball, thrown(0.1, "rk4", 0, 0, 3, 4, "time > 0.5"))
+near("a given time: x", value, 1.5, 1e-11)
+near("a given time: x by its rate", d["initial/x.rate"], 0.5, 1e-11)
+value, d = gradient("ball.x", ball, thrown(0.1, "rk4", 0, 0, 3, 4, "time > m / 4"))
+near("a time by a parameter: x", value, 1.5, 1e-11)
+near("a time by a parameter: x by it", d["parameter/m"], 0.75, 1e-11)
+value = gradient("time", ball, thrown(0.1, "rk4", 0, 0, 3, 4, "time > m / 4"), "parameter/m")[1]["parameter/m"]
+near("a time by a parameter: the time by it", value, 0.25, 1e-11)
+
+# ---- a push that begins, and one that ends -------------------------------------------------------------------------------------
+
+# from x = 0 with 4 m/s; at x = 1 a force of -6 N on 3 kg begins, and it is over at x = 2 by the second one
+pushed = f"{work}/pushed.scene"
+text = """gicscene: 1
+duration: 2
+step: STEP
+integrator: METHOD
+initial: {coordinates: {x: X0, z: 0}, rates: {x: V0, z: 1}}
+inputs: {push: PUSH}
+when:
+  - {if: "x > 1", inputs: {push: -6}, mark: one}
+  - {if: "x > 2", inputs: {push: 0}}
+"""
+
+
+def slid(x0, v0, push, g=10):
+    a, end = push / 3, 2
+    first = (1 - x0) / v0 if a == 0 else (math.sqrt(v0 * v0 + 2 * a * (1 - x0)) - v0) / a
+    v1 = v0 + a * first
+    v2 = math.sqrt(v1 * v1 - 4)
+    second = first + (v1 - v2) / 2
+    return 2 + v2 * (end - second)
+
+
+def richardson(function, h):
+    def one(h):
+        return (function(h) - function(-h)) / (2 * h)
+    return (64 * one(h / 4) - 20 * one(h / 2) + one(h)) / 45
+
+
+for method, step in (("rk4", 0.02), ("ab3", 0.01), ("rk4", 0.25), ("rk4", 0.5)):
+    for x0, v0, push in ((0.0, 4.0, 0.0), (0.1, 3.7, 1.5), (0.5, 4.0, 3.0)):
+        Path(pushed).write_text(text.replace("STEP", str(step)).replace("METHOD", method).replace("X0", repr(x0)).replace("V0", repr(v0))
+                                .replace("PUSH", repr(push)))
+        what = f"pushes, {method}, {step}, {x0, v0, push}"
+        by = {"initial/x": richardson(lambda e: slid(x0 + e, v0, push), 1e-2), "initial/x.rate": richardson(lambda e: slid(x0, v0 + e, push), 1e-2),
+              "input/push": richardson(lambda e: slid(x0, v0, push + e), 1e-2) if push else 0}
+        if not push:  # the limit of the formula
+            by["input/push"] = richardson(lambda e: slid(x0, v0, push + e), 3e-2)
+        value, d = gradient("ball.x", ball, pushed)
+        near(f"{what}: x", value, slid(x0, v0, push), 1e-11)
+        for name, wanted in by.items():
+            near(f"{what}: x by {name}", d[name], wanted, 1e-8)
+            near(f"{what}: x by {name} forwards", gradient("ball.x", ball, pushed, name)[1][name], d[name], 1e-12)
+
+# a push that moves to another value from the one that it has, and a wave that has it in the middle
+moved = """gicscene: 1
+duration: 1.5
+step: 0.02
+integrator: METHOD
+initial: {coordinates: {x: X0, z: 0}, rates: {x: V0, z: 1}}
+inputs: {push: {step: {from: FROM, to: 3, rise: 2}}}
+when:
+  - {if: "x > 0.3 + push / 20", inputs: {push: CHANGE}}
+"""
+knobs = {"initial/x": ("X0", 0.0, 0.1), "initial/x.rate": ("V0", 1.0, 0.3), "input/push[0]": ("FROM", 1.0, 0.5)}
+for change in ("{step: {to: -6, rise: 0.4}}", "{sine: {amplitude: 5, frequency: 1}}", "{step: {from: 2, to: 0, start: 0.1, rise: 0.3}}",
+               "{ramp: {to: -2, duration: 0.5}}"):
+    for method in ("ab3", "rk4"):
+        scene = moved.replace("CHANGE", change).replace("METHOD", method)
+        taylor(f"a push changes, {change}, {method}", "ball.x", ball, scene, knobs, 0.01 if method == "rk4" else 0.002)
+        path = f"{work}/moved.scene"
+        Path(path).write_text(scene.replace("X0", "0.0").replace("V0", "1.0").replace("FROM", "1.0"))
+        both_ways(f"a push changes, {change}, {method}", "integral(ball.x * time)", ball, path)
+        last = gic("-q", "--general", ball, path, "-o", "-").splitlines()
+        column = [name.split(" [")[0] for name in last[0].split(",")].index("ball.x")
+        # times of conditions are found by a cubic in the run, and by steps here
+        near(f"a push changes, {change}, {method}: the run's own x", gradient("ball.x", ball, path, "initial/x")[0],
+             float(last[-1].split(",")[column]), 1e-7)
+
+# ---- vehicles ------------------------------------------------------------------------------------------------------------------
+
+# a car that brakes as soon as it has turned, and a run that ends at a speed
+brakes = """gicscene: 1
+duration: 3
+step: 0.004
+integrator: METHOD
+initial: {position: [0, 0, 0.4825], velocity: [VX, 0.5, 0], coordinates: {spring_f_l: FRONT}, states: {STATES}}
+inputs:
+  rack: {step: {to: RACK, rise: 0.4, start: 0.1}}
+when:
+  - {if: "yaw > 0.05", inputs: {brake: {step: {to: 0.5, rise: 0.3}}}}
+  - {if: "abs(roll) > 0.02", mark: leans}
+until: "speed < 8.5"
+""".replace("STATES", ", ".join(f"tire_{a}_{b}.{c}: {v}" for a in "fr" for b in "lr"
+                                for c, v in (("spin", 22), ("slip_x", 0.01), ("slip_y", 0.02), ("brake", 0.1))))
+knobs = {"initial/x.rate": ("VX", 10.0, 0.2), "initial/spring_f_l": ("FRONT", 0.25, 0.01), "input/rack[1]": ("RACK", -0.012, 0.002)}
+for method in ("ab3\nratio: 4", "rk4"):
+    scene = brakes.replace("METHOD", method)
+    taylor(f"braking, {method!r}", "chassis.y", f"{models}/hmmwv_tires.veh", scene, knobs, 0.01 if method == "rk4" else 0.002)
+    path = f"{work}/brakes.scene"
+    for mark, value, unit in knobs.values():
+        scene = scene.replace(mark, repr(value))
+    Path(path).write_text(scene)
+    few = list(knobs) + ["initial/yaw", "initial/yaw.rate", "input/rack[0]"]
+    for formula in ("time", "integral(chassis.x)") if method == "rk4" else ("chassis.x",):
+        both_ways(f"braking, {method!r}, {formula}", formula, f"{models}/hmmwv_tires.veh", path, few)
+    last = gic("-q", "--general", f"{models}/hmmwv_tires.veh", path, "-o", "-").splitlines()
+    near(f"braking, {method!r}: ends when the run does", gradient("time", f"{models}/hmmwv_tires.veh", path, "initial/x")[0],
+         float(last[-1].split(",")[0]), 1e-6)
+check("it ends early", float(last[-1].split(",")[0]) < 2.9)
+
+finish()
