@@ -9,7 +9,7 @@ import sys
 
 gicrun, model, work = sys.argv[1:4]
 failed = passed = 0
-g = 9.80665
+g = 9.81  # of the model
 
 
 def check(what, value, wanted, tolerance, least=1e-9):
