@@ -283,8 +283,6 @@ static Asked read_command_line(int count, char **word)
         usage_fail("gicrun", "--compare goes with --kc, --sheet or --manoeuvre", NULL);
     if (asked.loads && asked.joints)
         usage_fail("gicrun", "one of --loads and --joints, please", NULL);
-    if (asked.joints && study->compare && asked.report && !study->varied)
-        usage_fail("gicrun", "--joints --compare is at the position of set-up: it goes without --report", NULL);
     if (asked.loads && ((asked.report && !study->varied) || study->travel > 0))
         usage_fail("gicrun", "--loads is at the position of set-up: it goes without --travel and --report", NULL);
     if (asked.report && !path_ends(asked.report, ".html"))

@@ -349,19 +349,163 @@ static void write_page(Carrying *c, const char *path)
     file_write(path, out.s, out.size);
 }
 
+/* ---- the page of two ------------------------------------------------------------------------------------ */
+
+typedef struct Both {
+    const Carrying *of[2];
+    const char *name[2];
+    const Sheet *sheet;
+} Both;
+
+/* The axle of a name, in a motion that it can make; -1: there is none. */
+static int axle_of(const Carrying *c, const char *name, KcMotion m)
+{
+    for (int a = 0; a < c->study->kc->axles; ++a)
+        if (!strcmp(c->study->kc->axle[a].name, name))
+            return c->at[a][m] ? a : -1;
+    return -1;
+}
+
+/* What a joint of that name carries in all drawn cases, y [DRAWN][rows]. Returns its unit; NULL: no load reaches it. */
+static const char *find_carried(const Carrying *c, int a, KcMotion m, const char *name, int rows, double *y)
+{
+    const char *title, *unit, *own;
+    for (int j = 0; (own = kc_carrying_curve(c, a, m, 0, j, y, &title, &unit)); ++j) {
+        if (strcmp(own, name) != 0 || !seen_of(c, a)[j])
+            continue;
+        for (int i = 1; i < DRAWN; ++i)
+            kc_carrying_curve(c, a, m, i, j, y + (size_t)i * (size_t)rows, &title, &unit);
+        return unit;
+    }
+    return NULL;
+}
+
+/* The joint of a name in both vehicles, each with its own abscissae: a color a case, the other one dashed. */
+static void draw_joint(Text *out, const Both *both, const int axle[2], KcMotion m, const char *name)
+{
+    int rows[2] = {0, 0}, at = 0;
+    const char *unit = NULL;
+    Panel panel = {.title = name, .curves = 2 * DRAWN, .pairs = true};
+    for (int k = 0; k < 2; ++k)
+        rows[k] = axle[k] >= 0 ? both->of[k]->study->curve[axle[k]][m]->rows : 0;
+    panel.rows = rows[0] + rows[1];
+    const size_t all = (size_t)panel.rows;
+    double *x = pool_alloc(out->pool, (all + 1) * sizeof *x),
+           *own = pool_alloc(out->pool, (DRAWN * all + 1) * sizeof *own);
+    panel.x = x;
+    panel.y = pool_alloc(out->pool, (2 * DRAWN * all + 1) * sizeof *panel.y);
+    for (size_t i = 0; i < 2 * DRAWN * all; ++i)
+        panel.y[i] = NAN;
+    for (int k = 0; k < 2; at += rows[k++]) {
+        if (axle[k] < 0)
+            continue;
+        const KcStudy *study = both->of[k]->study;
+        const KcCurve *of = study->curve[axle[k]][m];
+        const char *has = find_carried(both->of[k], axle[k], m, name, rows[k], own);
+        double scale;
+        const char *below = kc_abscissa(out->pool, study->kc, &study->kc->axle[axle[k]], m, &scale);
+        panel.below = panel.below && strcmp(panel.below, below) != 0
+                          ? pool_print(out->pool, "%s; %s", panel.below, below)
+                          : below;
+        for (int r = 0; r < rows[k]; ++r) {
+            x[at + r] = of->row[r].at * scale;
+            for (int i = 0; has && (!unit || !strcmp(unit, has)) && i < DRAWN; ++i)
+                panel.y[(size_t)(2 * i + k) * all + (size_t)(at + r)] = own[i * rows[k] + r];
+        }
+        unit = unit ? unit : has;
+    }
+    panel.unit = unit;
+    panel_draw(out, &panel);
+}
+
+static void draw_both(Text *out, const Both *both, const char *name, KcMotion m)
+{
+    const int axle[2] = {axle_of(both->of[0], name, m), axle_of(both->of[1], name, m)};
+    if (axle[0] < 0 && axle[1] < 0)
+        return;
+    text_print(out, "<h3>%s: %s", name, kc_motion_title[m]);
+    for (int i = 0; i < DRAWN; ++i)
+        text_print(out, " <span style=\"color:%s\">&#8212; %s</span>", panel_color(i), shown[i].title);
+    text_print(out, "</h3>\n<div class=\"curves\">\n");
+    for (int k = 0; k < 2; ++k)
+        for (int j = 0; axle[k] >= 0 && j <= both->of[k]->joints->joints; ++j) {
+            const Carrying *c = both->of[k], *first = both->of[0];
+            const char *joint = kc_joint_name(c->joints, &c->study->kc->axle[axle[k]], j);
+            bool drawn = !seen_of(c, axle[k])[j];
+            for (int i = 0; k && axle[0] >= 0 && i <= first->joints->joints; ++i)
+                drawn = drawn || (seen_of(first, axle[0])[i] &&
+                                  !strcmp(joint, kc_joint_name(first->joints, &first->study->kc->axle[axle[0]], i)));
+            if (!drawn)
+                draw_joint(out, both, axle, m, joint);
+        }
+    text_print(out, "</div>\n");
+}
+
+static void write_both(void *context, Text *out, int indent)
+{
+    const Both *both = context;
+    (void)indent;
+    for (int k = 0; k < 2; ++k)
+        kc_stops_html(out, both->of[k]->study, both->name[k]);
+    sheet_tables(both->sheet, out);
+    for (int k = 0; k < 2; ++k)
+        for (int a = 0; a < both->of[k]->study->kc->axles; ++a) {
+            const char *name = both->of[k]->study->kc->axle[a].name;
+            bool before = false;
+            for (int b = 0; k && b < both->of[0]->study->kc->axles; ++b)
+                before = before || !strcmp(both->of[0]->study->kc->axle[b].name, name);
+            for (KcMotion m = 0; m < KC_MOTIONS && !before; ++m)
+                draw_both(out, both, name, m);
+        }
+}
+
+static void write_identity_of_both(void *context, Text *out, int indent)
+{
+    const Both *both = context;
+    (void)indent;
+    text_print(out, "<p>What joints and steering carry, by springs and by 1 kN or 100 N m a wheel: ");
+    text_html(out, both->name[0]);
+    text_print(out, " drawn through, ");
+    text_html(out, both->name[1]);
+    text_print(out, " dashed. What differs is marked. gicgen " GICGEN_VERSION ".</p>\n");
+}
+
+static const Insertion points_of_both[] = {{"identity", write_identity_of_both}, {"axles", write_both}, {NULL, NULL}};
+static const Insertions both_points = {(const char *const[]){"kc.html.in", NULL}, points_of_both, NULL};
+
+static void write_page_of_both(Pool *pool, Both *both, const char *path)
+{
+    Text out = {.pool = pool};
+    templates_check(pool, NULL, (const Insertions *const[]){&both_points, NULL});
+    template_expand(pool, &out, NULL, "kc.html.in", both->name[0], NULL, &both_points, both);
+    file_write(path, out.s, out.size);
+}
+
+static void compare(Pool *pool, const Model *model, const Carrying *c, const Request *request)
+{
+    const char *name;
+    const Model *model_of_other = sheet_other(pool, model, request->compare, &name);
+    const KcStudy study = kc_study(pool, model_of_other, NULL, request);
+    kc_must_move(model_of_other, &study);
+    const Carrying other = open_all(pool, model_of_other, NULL, request, &study);
+    Sheet sheet = kc_carrying_sheet(c, model);
+    const Sheet beside = kc_carrying_sheet(&other, model_of_other);
+    sheet_compare(&sheet, &beside, name);
+    if (request->results)
+        sheet_csv(&sheet, request->results);
+    if (request->report)
+        write_page_of_both(pool, &(Both){{c, &other}, {model->name, name}, &sheet}, request->report);
+    if (!request->results && !request->report)
+        sheet_print(&sheet, ": joints, models/KC.md defines it");
+}
+
 void kc_joints_report(Pool *pool, const Model *model, const Scene *scene, const Request *request)
 {
     const KcStudy study = kc_study(pool, model, scene, request);
     kc_must_move(model, &study);
     Carrying c = open_all(pool, model, scene, request, &study);
     if (request->compare) {
-        const char *name;
-        const Model *model_of_other = sheet_other(pool, model, request->compare, &name);
-        const KcStudy study_of_other = kc_study(pool, model_of_other, NULL, request);
-        const Carrying other = open_all(pool, model_of_other, NULL, request, &study_of_other);
-        Sheet sheet = kc_carrying_sheet(&c, model);
-        const Sheet beside = kc_carrying_sheet(&other, model_of_other);
-        sheet_beside(&sheet, &beside, name, request->results, ": joints, models/KC.md defines it");
+        compare(pool, model, &c, request);
         return;
     }
     if (request->results)

@@ -51,6 +51,14 @@ run --kc --joints --axle front --compare "$models/hmmwv.veh" "$models/hmmwv.veh"
 check 'a vehicle beside itself' sh -c "grep -q 'tierod_f_l: lateral' '$work/out' && ! grep -q '\*$' '$work/out'"
 run --kc --joints --axle front --compare "$models/hmmwv14.veh" "$models/hmmwv.veh" -o "$work/both.csv"
 check 'two vehicles' grep -q '^front.rack.aligning,[0-9.e+-]*,1/m,[0-9.e+-]*,' "$work/both.csv"
+run --kc --joints --axle front --compare "$models/hmmwv14.veh" "$models/hmmwv.veh" --report "$work/both.html"
+check 'their page' exits 0
+check 'differences are marked' grep -q '<tr class="differs">' "$work/both.html"
+sed -n '/front: Steering/,/<.figure>/p' "$work/both.html" | grep '<polyline' >"$work/lines"
+check 'six loads of both' [ "$(wc -l <"$work/lines")" -ge 12 ]
+check 'half of them dashed' [ "$(grep -c dasharray "$work/lines")" -ge 6 ]
+check 'a joint that one of them has' [ "$(grep -c '<figcaption>knee_f_l, N' "$work/both.html")" -eq 3 ]
+check 'no curve has something else than numbers' sh -c "! grep -qiE '[^a-z](nan|inf)[^a-z]' '$work/both.html'"
 
 echo "$passed passed, $failed failed"
-[ "$failed" -eq 0 ] && [ "$passed" -ge 23 ]
+[ "$failed" -eq 0 ] && [ "$passed" -ge 29 ]
