@@ -113,9 +113,9 @@ typedef struct gicl_options {
     const char *recovery; /* "auto", "newton", "closed" */
     const char *compiler; /* of "cc": a command */
     const char *flags;    /* more options for it */
-    const char
-        *integrator;  /* instead of the scenes': "ab3", "rk4", "ros2", "ros3", "imex", "adams", "rkck", "bdf", "auto". With an
-                      * implicit one, "ros2", "ros3" or "imex", code of instances and batches has all three */
+    /* instead of the scenes': "ab3", "rk4", "ros2", "ros3", "imex", "adams", "rkck", "bdf", "auto". With "ros2", "ros3"
+     * or "imex" code of instances and batches has implicit steps */
+    const char *integrator;
     double tolerance; /* of variable steps, instead of the scenes' */
     int general;      /* 1: gicl_run() uses code as for any scene, as gicrun --general does */
     int lanes;        /* of "cc" in runs and studies: alike parts in vectors of 2, 4, 8 or 16 numbers; 0: none */
