@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Backwards through what conditions do: see tangent_event.c. */
+ * Backwards through what conditions and contacts do: see tangent_event.c. */
 #include "gic_runtime.h"
 #include "run/adjoint_private.h"
 #include "scene/profile.h"
@@ -46,15 +46,17 @@ void happenings_back(Back *back, const TrailStep *step)
     }
 }
 
-/* By the condition that ends a piece, times `weight`, to the state there and the time. */
+/* By the condition or contact that ends a piece, times `weight`, to the state there and the time. */
 static int condition_back(Back *back, const TrailStep *last, double weight)
 {
     const TangentRun *run = back->run;
     const TrailEvent *guard = trail_event(run->trail, last->guard);
     double by_output[run->code->output_count + 1];
     memset(by_output, 0, sizeof by_output);
-    by_output[run->outputs + last->condition] = weight;
-    const int status = outputs_back(back, guard, by_output);
+    const int contact = last->condition - run->happened.conditions;
+    if (contact < 0)
+        by_output[run->outputs + last->condition] = weight;
+    const int status = contact < 0 ? outputs_back(back, guard, by_output) : press_back(back, guard, contact, weight);
     if (status != GIC_OK)
         return status;
     memcpy(back->state, run->linear->along.y, (size_t)run->states * sizeof *back->state);

@@ -46,6 +46,8 @@ void settle_back(Back *back, const TrailEvent *settled);
 int rate_back(Back *back, const TrailEvent *call, const double *by_rate, double weight, const Knot *knot);
 /* The same of the state that a sample sees, by all outputs of the model [output_count]. */
 int outputs_back(Back *back, const TrailEvent *event, const double *by_output);
+/* The same by the number of a contact. */
+int press_back(Back *back, const TrailEvent *event, int contact, double weight);
 /* adjoint_sample.c: back through samples of controllers, the first of two events; weight: of the output before them.
  * Returns a status. */
 int sample_back(Back *back, int event, double weight);

@@ -134,6 +134,18 @@ int outputs_back(Back *back, const TrailEvent *event, const double *by_output)
     return pulled(back, event, linear_pull(linear, run->self, LINEAR_RATE, outputs), NULL);
 }
 
+int press_back(Back *back, const TrailEvent *event, int contact, double weight)
+{
+    const TangentRun *run = back->run;
+    const Linear *linear = run->linear;
+    const int status = go_to(back, event);
+    if (status != GIC_OK)
+        return status;
+    memset(linear->drate, 0, (size_t)(run->states + run->code->contact_count) * sizeof weight);
+    linear->drate[run->states + contact] = weight;
+    return pulled(back, event, linear_pull(linear, run->self, LINEAR_PRESS, 0), NULL);
+}
+
 int event_back(Back *back, const TrailEvent *event, double weight, const Knot *knot)
 {
     static const LinearPart part[] = {

@@ -21,8 +21,8 @@ typedef struct Scalar {
     const Model *model; /* whose outputs are the formula and the conditions of the scene */
 } Scalar;
 
-/* text: a formula of FORMAT.md section 6, alone or as integral(...) or maximum(...), which reads outputs, too; scene: whose
- * conditions are outputs after it, or NULL. Ends in diag_fail. */
+/* text: a formula of FORMAT.md section 6, alone or as integral(...) or maximum(...), which reads outputs, too; scene:
+ * whose conditions are outputs after it, or NULL. Ends in diag_fail. */
 Scalar scalar_read(Pool *pool, const Model *model, const Scene *scene, const char *text);
 
 /* ---- gradient.c: the run */

@@ -204,6 +204,8 @@ static int rate_to_side(const Linear *linear, const Instance *self, LinearPart p
         status = tape_link_wheels_dual(engine, &world, array, slope, linear->link, linear->frame);
     if (engine->wheel && part != LINEAR_LINKS && status == GIC_OK)
         status = tape_turn_wheels_dual(engine, &world, array, slope, linear->link, linear->frame);
+    if (part == LINEAR_PRESS && status == GIC_OK)
+        return tape_play_dual(engine->contacts, 0, array, slope, &world, engine->frame, linear->frame);
     if (part != LINEAR_RATE || status != GIC_OK)
         return status;
     status = tape_play_dual(engine->dynamics, 0, array, slope, &world, engine->frame, linear->frame);
@@ -417,6 +419,7 @@ static Part results_of(const Linear *linear, LinearPart part, int outputs)
     case LINEAR_LINKS: return (Part){linear->link[1], code->link_count};
     case LINEAR_FAST: return (Part){linear->drate + code->slow_count, code->fast_count};
     case LINEAR_SHIFT: return (Part){linear->choice[1], linear->choices};
+    case LINEAR_PRESS: return (Part){linear->drate, code->slow_count + code->fast_count + code->contact_count};
     default: return (Part){linear->drate, code->slow_count + code->fast_count + outputs};
     }
 }
@@ -660,7 +663,9 @@ Linear *linear_open(Pool *pool, const Engine *engine)
     }
     name_numbers(pool, linear);
     const size_t states = (size_t)(tape->code.slow_count + tape->code.fast_count + 1);
-    const size_t results = states + (size_t)tape->code.output_count;
+    const size_t results =
+        states + (size_t)(tape->code.output_count > tape->code.contact_count ? tape->code.output_count
+                                                                             : tape->code.contact_count);
     linear->value = (Instance *)(void *)instance_new(pool, engine);
     linear->slope = (Instance *)(void *)instance_new(pool, engine);
     linear->frame = pool_alloc(pool, (size_t)(tape->slots + 1) * sizeof(double));

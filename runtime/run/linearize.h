@@ -59,12 +59,14 @@ int linear_column(const Linear *linear, Instance *self, LinearKind kind, int j, 
 void linear_direction(const Linear *linear, Instance *self, LinearKind kind, int j);
 /* What of the vehicle: the rate of its state and the first outputs; the links of wheels with tires (gic_runtime.h) at
  * its coordinates and the base; the rates of the fast states at given links; what gears are chosen by, of an instance
- * whose coordinates are gathered (tape_gather()) and whose gears are engaged. */
-typedef enum LinearPart { LINEAR_RATE, LINEAR_LINKS, LINEAR_FAST, LINEAR_SHIFT } LinearPart;
+ * whose coordinates are gathered (tape_gather()) and whose gears are engaged; the numbers of contacts (gic_contacts).
+ */
+typedef enum LinearPart { LINEAR_RATE, LINEAR_LINKS, LINEAR_FAST, LINEAR_SHIFT, LINEAR_PRESS } LinearPart;
 /* linear->drate: derivatives along linear->along, in Euler parameters, of the rate of the state at which the instance
  * has just been evaluated, and behind it of the first outputs (else 0 of them). LINEAR_LINKS: linear->link[1], of the
  * links. LINEAR_FAST: linear->drate, of the fast states, along linear->along and links that change by linear->link[1];
- * linear->link[0]: the links. LINEAR_SHIFT: linear->choice[1], and linear->choice[0] itself. At kinks those of the
+ * linear->link[0]: the links. LINEAR_SHIFT: linear->choice[1], and linear->choice[0] itself. LINEAR_PRESS:
+ * those of contacts in linear->drate where else outputs are. At kinks those of the
  * branch that is taken. Returns a status. */
 int linear_slope(const Linear *linear, const Instance *self, LinearPart part, int outputs);
 /* The same backwards: linear->along becomes the derivative, by each number of state, inputs, ports, parameters and

@@ -17,16 +17,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Where a step or a piece begins. */
-typedef struct Saved {
-    Both *both;
-    Instance *self;
-    bool *live;
-    TrailMark mark;
-    TrailStep next;
-} Saved;
-
-static Saved *saved_new(const TangentRun *run)
+Saved *tangent_saved_new(const TangentRun *run)
 {
     Saved *saved = pool_alloc(run->pool, sizeof *saved);
     saved->both = pool_alloc(run->pool, run->descriptor.size);
@@ -35,7 +26,7 @@ static Saved *saved_new(const TangentRun *run)
     return saved;
 }
 
-static void save(const TangentRun *run, Saved *saved, const TrailStep *next)
+void tangent_save(const TangentRun *run, Saved *saved, const TrailStep *next)
 {
     memcpy(saved->both, run->both, run->descriptor.size);
     memcpy(saved->self, run->self, run->code->size);
@@ -45,7 +36,7 @@ static void save(const TangentRun *run, Saved *saved, const TrailStep *next)
         saved->mark = trail_mark(run->trail);
 }
 
-static void restore(const TangentRun *run, const Saved *saved, TrailStep *next)
+void tangent_restore(const TangentRun *run, const Saved *saved, TrailStep *next)
 {
     memcpy(run->both, saved->both, run->descriptor.size);
     memcpy(run->self, saved->self, run->code->size);
@@ -59,14 +50,13 @@ void tangent_events_open(TangentRun *run, int conditions)
 {
     const size_t all = (size_t)(run->descriptor.slow_count + run->descriptor.fast_count);
     Happened *happened = &run->happened;
-    *happened = (Happened){.conditions = conditions, .end = -1};
+    happened->conditions = conditions;
+    happened->end = -1;
     happened->begun = pool_alloc(run->pool, ((size_t)run->scene->profiles + 1) * sizeof *happened->begun);
     for (int i = 0; i < run->scene->profiles; ++i)
         happened->begun[i].present = pool_alloc(run->pool, ((size_t)run->carried + 1) * sizeof(double));
-    if (!conditions)
-        return;
-    happened->start = saved_new(run);
-    happened->inner = saved_new(run);
+    happened->start = tangent_saved_new(run);
+    happened->inner = tangent_saved_new(run);
     happened->fixed = pool_alloc(run->pool, (all + 1) * sizeof(double));
     happened->longer = pool_alloc(run->pool, (all + 1) * sizeof(double));
 }
@@ -138,20 +128,20 @@ static int make_piece(TangentRun *run, double time, int parts, int late, int lat
     return status;
 }
 
-/* The value of condition c now. */
-static int condition_at(const TangentRun *run, int c, double *value)
+int tangent_guard(const TangentRun *run, int guard, double *value)
 {
+    const gic_model *code = run->code;
     const double time = gic_time(run->both);
+    const int contact = guard - run->happened.conditions;
+    double *state = tape_array(run->self, code->state_offset), press[GIC_CONTACTS];
     tangent_inputs_of(run, time);
-    tangent_take(run, tangent_array(run, run->descriptor.state_offset), 0,
-                 tape_array(run->self, run->code->state_offset));
-    const int status = run->code->outputs(run->self);
-    *value = tape_array(run->self, run->code->output_offset)[run->outputs + c];
+    tangent_take(run, tangent_array(run, run->descriptor.state_offset), 0, state);
+    const int status = contact < 0 ? code->outputs(run->self) : code->contacts->press(run->self, time, state, press);
+    *value = contact < 0 ? tape_array(run->self, code->output_offset)[run->outputs + guard] : press[contact];
     return status;
 }
 
-/* The change of condition c along a change `along` of the state; *late: of the time; k: a variable, -1: none. */
-static int condition_slope(const TangentRun *run, int c, const double *along, double late, int k, double *slope)
+int tangent_guard_slope(const TangentRun *run, int guard, const double *along, double late, int k, double *slope)
 {
     const Direction *direction = &run->linear->along;
     const double time = gic_time(run->both);
@@ -168,12 +158,15 @@ static int condition_slope(const TangentRun *run, int c, const double *along, do
     tangent_input_rates(run, time, rate);
     for (int i = 0; i < run->inputs; ++i)
         direction->u[i] += late * rate[i];
-    const int status = linear_slope(run->linear, run->self, LINEAR_RATE, run->outputs + run->happened.conditions);
-    *slope = run->linear->drate[run->states + run->outputs + c];
+    const int contact = guard - run->happened.conditions;
+    const int status = contact < 0
+                           ? linear_slope(run->linear, run->self, LINEAR_RATE, run->outputs + run->happened.conditions)
+                           : linear_slope(run->linear, run->self, LINEAR_PRESS, 0);
+    *slope = run->linear->drate[run->states + (contact < 0 ? run->outputs + guard : contact)];
     return status;
 }
 
-/* A piece that ends at `time` as condition c becomes true there, at the clock *later. */
+/* A piece that ends at `time`, as guard c is 0 there, at the clock *later. */
 static int located_piece(TangentRun *run, double time, int parts, int late, int c, TrailStep *next, int *later)
 {
     Happened *happened = &run->happened;
@@ -193,28 +186,28 @@ static int located_piece(TangentRun *run, double time, int parts, int late, int 
         tangent_note(run, TRAIL_RATE, time, part, run->states, part, 0);
         return GIC_OK;
     }
-    save(run, happened->inner, next);
+    tangent_save(run, happened->inner, next);
     status = make_piece(run, time, parts, late, clock, next);
     memcpy(happened->fixed, both, size);
-    restore(run, happened->inner, next);
+    tangent_restore(run, happened->inner, next);
     for (int k = 0; k < run->carried; ++k)
         happened->clock[clock][k] = 1;
     if (status == GIC_OK)
         status = make_piece(run, time, parts, late, clock, next);
     if (status == GIC_OK)
-        status = condition_at(run, c, &value);
+        status = tangent_guard(run, c, &value);
     tangent_take(run, both, 1, longer);
     tangent_take(run, happened->fixed, 1, part);
     for (int i = 0; i < run->states; ++i)
         longer[i] -= part[i];
     if (status == GIC_OK)
-        status = condition_slope(run, c, longer, 1, -1, &slope);
+        status = tangent_guard_slope(run, c, longer, 1, -1, &slope);
     memset(happened->clock[clock], 0, (size_t)run->carried * sizeof(double));
     tangent_set_inputs(run, time); /* with the time as it is */
     for (int k = 0; k < run->carried && status == GIC_OK; ++k) {
         double own = 0;
         tangent_take(run, happened->fixed, 1 + k, part);
-        status = condition_slope(run, c, part, 0, k, &own);
+        status = tangent_guard_slope(run, c, part, 0, k, &own);
         const double by = -own / slope;
         happened->clock[clock][k] = by;
         for (int i = 0; i < run->states; ++i)
@@ -222,6 +215,14 @@ static int located_piece(TangentRun *run, double time, int parts, int late, int 
         tangent_put(run, part, 1 + k, both);
     }
     return status == GIC_OK && !gic_finite(happened->clock[clock], run->carried) ? GIC_ERROR_RESULT : status;
+}
+
+int tangent_piece(TangentRun *run, double time, int parts, int late, int guard, TrailStep *next, int *later)
+{
+    if (guard >= 0 && !run->plain)
+        return located_piece(run, time, parts, late, guard, next, later);
+    *later = -1;
+    return make_piece(run, time, parts, late, -1, next);
 }
 
 /* On to `time` past samples of controllers, whose times stay; c: the condition that is true there, -1: none, and the
@@ -247,9 +248,7 @@ static int walk(TangentRun *run, double time, int late, int c, TrailStep *next, 
     if (status != GIC_OK)
         return status;
     const int parts = (int)ceil(0.999 * ratio * (time - gic_time(run->both)) / way);
-    if (c >= 0 && !run->plain)
-        return located_piece(run, time, parts, late, c, next, later);
-    return make_piece(run, time, parts, late, -1, next);
+    return tangent_piece(run, time, parts, late, c, next, later);
 }
 
 static Actions *actions_of(const TangentRun *run)
@@ -264,11 +263,11 @@ static int value_there(TangentRun *run, const Saved *start, double time, int c, 
 {
     TrailStep next;
     int later;
-    restore(run, start, &next);
+    tangent_restore(run, start, &next);
     run->plain = true;
     int status = walk(run, time, -1, -1, &next, &later);
     if (status == GIC_OK)
-        status = condition_at(run, c, value);
+        status = tangent_guard(run, c, value);
     run->plain = false;
     return status;
 }
@@ -306,8 +305,8 @@ static int locate(TangentRun *run, const Saved *start, double end, int c, double
     double low = first, high = end, at_low = 0, at_high = there, value, rate[run->states + 1];
     double slope = 0, weight_low = 0, weight_high = 0;
     TrailStep next;
-    restore(run, start, &next);
-    int status = condition_at(run, c, &at_low);
+    tangent_restore(run, start, &next);
+    int status = tangent_guard(run, c, &at_low);
     if (status == GIC_OK)
         status = value_there(run, start, end, c, &value);
     if (status == GIC_OK && value <= 0) { /* the whole step says so, but not its parts of RK4 */
@@ -341,9 +340,9 @@ static int locate(TangentRun *run, const Saved *start, double end, int c, double
     if (status != GIC_OK)
         return status;
     tangent_take(run, run->happened.longer, 0, rate);
-    status = condition_at(run, c, &value);
+    status = tangent_guard(run, c, &value);
     if (status == GIC_OK)
-        status = condition_slope(run, c, rate, 1, -1, &slope);
+        status = tangent_guard_slope(run, c, rate, 1, -1, &slope);
     const double jump = at_high - fmin(at_low, 0), most = 1e-3 * width;
     found->moves = slope > 0 && jump <= slope * most && condition_moves(run, c, &status);
     if (found->moves && !actions_of(run)->action[c].ends) /* what comes after has to have a piece of the step */
@@ -364,7 +363,7 @@ static int note_held(const TangentRun *run)
     for (int i = 0; i < actions->count && status == GIC_OK; ++i) {
         double value = 0;
         if (!actions->action[i].done)
-            status = condition_at(run, i, &value);
+            status = tangent_guard(run, i, &value);
         actions->action[i].held = value > 0;
     }
     return status;
@@ -405,8 +404,8 @@ static int first_action(TangentRun *run, Saved *start, Saved *end, Found *first,
         double value = 0;
         if (actions->action[i].done || actions->action[i].held)
             continue;
-        restore(run, end, &next);
-        status = condition_at(run, i, &value);
+        tangent_restore(run, end, &next);
+        status = tangent_guard(run, i, &value);
         if (status != GIC_OK || !(value > 0))
             continue;
         status = locate(run, start, gic_time(end->both), i, value, &found);
@@ -415,7 +414,7 @@ static int first_action(TangentRun *run, Saved *start, Saved *end, Found *first,
             *which = i;
         }
     }
-    restore(run, end, &next);
+    tangent_restore(run, end, &next);
     return status;
 }
 
@@ -508,7 +507,7 @@ static int happen_all(TangentRun *run, int which, int clock, TrailStep *next)
         for (int i = 0; i < actions->count && status == GIC_OK && which < 0; ++i) {
             double value = 0;
             if (!actions->action[i].done && !actions->action[i].held)
-                status = condition_at(run, i, &value);
+                status = tangent_guard(run, i, &value);
             if (status == GIC_OK && value > 0)
                 which = i;
         }
@@ -530,7 +529,7 @@ static void add_empty(const TangentRun *run, TrailStep *next)
 void tangent_events_before(TangentRun *run, const TrailStep *next)
 {
     if (run->happened.conditions)
-        save(run, run->happened.start, next);
+        tangent_save(run, run->happened.start, next);
 }
 
 int tangent_events_after(TangentRun *run)
@@ -544,14 +543,14 @@ int tangent_events_after(TangentRun *run)
     if (!happened->conditions)
         return GIC_OK;
     for (;;) {
-        save(run, end, &trail_part);
+        tangent_save(run, end, &trail_part);
         status = first_action(run, start, end, &found, &which);
         if (status != GIC_OK || which < 0)
             break;
         TrailStep next = trail_part;
         clock = -1;
         if (found.moves || found.time < target) {
-            restore(run, start, &next);
+            tangent_restore(run, start, &next);
             status = walk(run, found.time, late, found.moves ? which : -1, &next, &clock);
         }
         if (status == GIC_OK)
@@ -564,7 +563,7 @@ int tangent_events_after(TangentRun *run)
                 return status;
         }
         late = clock;
-        save(run, start, &next);
+        tangent_save(run, start, &next);
         status = note_held(run);
         if (status == GIC_OK && gic_time(run->both) < target)
             status = walk(run, target, late, -1, &next, &clock);

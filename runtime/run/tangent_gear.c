@@ -294,8 +294,9 @@ int tangent_shift(TangentRun *run, double start, bool dual, TrailStep *step)
     memset(rate_there, 0, sizeof rate_there);
     if (changes_at(run, &ends, 1) != 1)
         return GIC_OK;
-    if (run->rest.going) {
-        run->happened.failed = "a change of gear before a condition becomes true in the same step";
+    if (run->rest.going || run->remade) {
+        run->happened.failed = run->remade ? "a change of gear in a step in which a contact begins or ends"
+                                           : "a change of gear before a condition becomes true in the same step";
         return GIC_ERROR_EVENTS;
     }
     int status = run->descriptor.rhs(run->both, now, to, rate_there);

@@ -55,6 +55,7 @@ typedef struct Happened {
     int happenings;
     const char *failed;          /* what of it has no derivative; NULL: all has */
     struct Saved *start, *inner; /* work: where a step and a piece begin */
+    struct Watch *watch;         /* of contacts; NULL: none are located */
     double *fixed, *longer;      /* work: [all of the state] */
 } Happened;
 
@@ -78,6 +79,7 @@ struct TangentRun {
     int variables, carried; /* carried: whose derivatives are in the state: all of them, or backwards none */
     RunVariable *variable;
     bool shifted; /* the run ended where a gear changes in a way that has no derivative */
+    bool remade;  /* the last step, in pieces that end at contacts */
     bool plain;   /* without derivatives for now, to search for something */
     double *from; /* state of both where the step began */
     Rest rest;
@@ -122,6 +124,38 @@ int tangent_slope(const TangentRun *run, const double *state, int k, int outputs
 int tangent_events_begin(TangentRun *run);
 void tangent_events_before(TangentRun *run, const TrailStep *next);
 int tangent_events_after(TangentRun *run);
+/* Where a step begins or ends, and what happens from there on. */
+typedef struct Saved {
+    Both *both;
+    Instance *self;
+    bool *live;
+    TrailMark mark;
+    TrailStep next;
+} Saved;
+
+Saved *tangent_saved_new(const TangentRun *run);
+void tangent_save(const TangentRun *run, Saved *saved, const TrailStep *next);
+void tangent_restore(const TangentRun *run, const Saved *saved, TrailStep *next);
+/* To a time in `parts` parts; late, later: clocks of the present time and of that one, -1: it stays. guard: what ends
+ * the piece, and *later becomes its clock: a condition, or from the number of conditions on a contact; -1: nothing
+ * does. */
+int tangent_piece(TangentRun *run, double time, int parts, int late, int guard, TrailStep *next, int *later);
+/* The value of a guard at the present state, after which guard_slope() is that along a change of the state and of the
+ * time; k: and of variable k, -1: of none. Both return a status. */
+int tangent_guard(const TangentRun *run, int guard, double *value);
+int tangent_guard_slope(const TangentRun *run, int guard, const double *along, double late, int k, double *slope);
+
+/* tangent_contact.c: `descriptor` of both gets the contacts of the vehicle, if the scene locates them; *at: room in the
+ * instance, bytes. */
+void tangent_contacts_make(TangentRun *run, gic_model *descriptor, size_t *at);
+/* When a run begins. */
+void tangent_contacts_begin(TangentRun *run);
+/* An evaluation of the rates at a time. */
+void tangent_contacts_see(const TangentRun *run, double time);
+/* Before and after a step: where contacts change in it, it is made again in pieces that end there. *again: it was.
+ * Returns a status. */
+void tangent_contacts_before(TangentRun *run, const TrailStep *next);
+int tangent_contacts_after(TangentRun *run, bool *again);
 /* Once, before the first run of it. conditions: how many outputs of the model are conditions of the scene. */
 void tangent_events_open(TangentRun *run, int conditions);
 /* How inputs change by variable k as profiles have begun later, or from other values. */

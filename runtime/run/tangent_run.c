@@ -346,6 +346,7 @@ static int rate_of_both(void *self, double time, const double *state, double *ra
     double *own = tape_array(run->self, run->code->state_offset), found[run->states + 1];
     tangent_inputs_of(run, time);
     tangent_take(run, state, 0, own);
+    tangent_contacts_see(run, time);
     tangent_note(run, TRAIL_RATE, time, own, run->states, own, 0);
     int status = run->code->rhs(run->self, time, own, found);
     if (run->plain)
@@ -455,6 +456,7 @@ static void make_both(TangentRun *run)
         *array[i].offset = at;
         at += (array[i].count + 1) * sizeof(double);
     }
+    tangent_contacts_make(run, model, &at);
     model->size = at;
     run->both = pool_alloc(run->pool, at);
     run->from = pool_alloc(run->pool, (all + 1) * sizeof(double));
@@ -481,7 +483,6 @@ static void check_scene(Pool *pool, const Model *model, const Scene *scene)
         {scene->steady > 0, "fast states take longer steps where they are steady", "leave `steady` out"},
         {condition_count(scene) != condition_has(model), "conditions change the run", "leave `until` and `when` out"},
         {scene->rest, "the vehicle may sleep", "leave `sleep` out"},
-        {scene->locate, "steps end where contacts begin and end", "`locate: false`"},
     };
     for (size_t i = 0; i < sizeof refused / sizeof *refused; ++i)
         if (refused[i].is)
@@ -631,6 +632,7 @@ int tangent_begin(TangentRun *run, const Scene *scene)
     memcpy(input, tape_array(run->self, run->code->input_offset),
            (size_t)run->inputs * sizeof *input); /* profiles set those that they are of */
     inputs_of_both(run, 0, 0, input);
+    tangent_contacts_begin(run);
     return status == GIC_OK ? tangent_events_begin(run) : status;
 }
 
@@ -681,13 +683,18 @@ static int advance(TangentRun *run, double h, int32_t method, bool dual, const T
     }
     memcpy(run->from, tangent_array(run, run->descriptor.state_offset),
            (size_t)(run->descriptor.slow_count + run->descriptor.fast_count) * sizeof *run->from);
+    tangent_contacts_before(run, next);
     int status = dual ? gic_step_dual(&run->descriptor, run->both, h, run->scene->ratio)
                       : gic_step(&run->descriptor, run->both, h, method);
-    if (step)
+    if (status == GIC_OK)
+        status = tangent_contacts_after(run, &run->remade);
+    if (run->remade && step)
+        step = trail_last(run->trail);
+    else if (step)
         step->gear = trail_events(run->trail);
     if (status == GIC_OK && run->code->shift)
         status = tangent_shift(run, start, dual, step);
-    if (step)
+    if (step && !run->remade)
         step->knots = step->end = trail_events(run->trail);
     return status;
 }
@@ -768,9 +775,10 @@ int tangent_step(TangentRun *run)
         head->method = run->scene->method;
         head->ratio = tangent_parts(run, dual);
     }
-    if (status == GIC_OK && !tangent_knots_move(run))
+    const int noted = run->trail ? trail_events(run->trail) : 0;
+    if (status == GIC_OK && !tangent_knots_move(run) && !run->remade)
         status = knots_cross(&run->descriptor, run->scene, head, start, history);
     if (run->trail)
-        trail_last(run->trail)->end = trail_events(run->trail);
+        trail_last(run->trail)->end += trail_events(run->trail) - noted;
     return status == GIC_OK ? tangent_events_after(run) : status;
 }

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""gradient_events.py GICRUN MODELS WORK: gradients of runs that `until` ends and in which `when` changes inputs. A ball that is thrown
-and carts in closed form, forwards and backwards; vehicles by Taylor remainders, and both ways against each other."""
+"""gradient_events.py GICRUN MODELS WORK: gradients of runs that `until` ends, in which `when` changes inputs, and whose contacts are located.
+A ball that is thrown, carts, and a mass that bounces in closed form, forwards and backwards; vehicles by Taylor remainders, and both ways against each other."""
 import math
 from pathlib import Path
 
@@ -158,6 +158,87 @@ for change in ("{step: {to: -6, rise: 0.4}}", "{sine: {amplitude: 5, frequency: 
         # times of conditions are found by a cubic in the run, and by steps here
         near(f"a push changes, {change}, {method}: the run's own x", gradient("ball.x", ball, path, "initial/x")[0],
              float(last[-1].split(",")[column]), 1e-7)
+
+# ---- contacts that are located --------------------------------------------------------------------------------------------------
+
+drop = str(Path(__file__).resolve().parent.parent / "data/contact/drop.veh")  # 1 kg on a floor of k N/m at z = 0
+
+
+def fallen(z, v, k, end):
+    """Place at `end`: parabolas in the air, an oscillation about -10 / k on the floor."""
+    w, t = math.sqrt(k), 0.0
+    while True:
+        air = (v + math.sqrt(v * v + 20 * z)) / 10
+        if t + air > end:
+            return z + v * (end - t) - 5 * (end - t) ** 2
+        t, z, v = t + air, 0.0, v - 10 * air
+        floor = 2 * (math.pi - math.atan2(-v / w, 10 / k)) / w  # until it is as high again
+        if t + floor > end:
+            return -10 / k + 10 / k * math.cos(w * (end - t)) + v / w * math.sin(w * (end - t))
+        t, v = t + floor, -v
+
+
+dropped = """gicscene: 1
+duration: END
+step: STEP
+integrator: METHOD
+locate: true
+initial: {coordinates: {z: Z}, rates: {z: V}}
+parameters: {k: K, c: C}
+"""
+fall = f"{work}/drop.scene"
+for method, step, wide in (("rk4", 0.001, 1e-9), ("ab3", 0.0005, 1e-6)):
+    for z, v, k, end in ((1.0, 0.0, 100.0, 2.0), (0.2, -1.0, 400.0, 1.5), (1.25, 0.0, 10000.0, 2.2)):
+        Path(fall).write_text(dropped.replace("END", str(end)).replace("STEP", str(step)).replace("METHOD", method).replace("Z", repr(z))
+                              .replace("V", repr(v)).replace("K", repr(k)).replace("C", "0"))
+        what = f"a drop, {method}, {z, v, k}"
+        value, d = gradient("z.value", drop, fall)
+        size = (k / 100) ** 2  # what steps leave grows with a power of their share of a period
+        near(f"{what}: z", value, fallen(z, v, k, end), wide * size)
+        by = {"initial/z": richardson(lambda e: fallen(z + e, v, k, end), 1e-3), "initial/z.rate": richardson(lambda e: fallen(z, v + e, k, end), 1e-3),
+              "parameter/k": richardson(lambda e: fallen(z, v, k + e, end), 1e-3 * k)}
+        for name, wanted in by.items():
+            near(f"{what}: by {name}", d[name], wanted, 20 * wide * size * max(1, abs(wanted)))
+            if step == 0.001:
+                near(f"{what}: by {name} forwards", gradient("z.value", drop, fall, name)[1][name], d[name], 1e-12 * max(1, abs(wanted)))
+# where steps are long it is the derivative of the steps; a damper whose force does not pull
+knobs = {"initial/z": ("Z", 1.0, 0.1), "initial/z.rate": ("V", -0.43, 0.2), "parameter/k": ("K", 200.0, 10), "parameter/c": ("C", 0.3, 0.05)}
+for method in ("rk4", "ab3"):
+    scene = dropped.replace("END", "2").replace("STEP", "0.01").replace("METHOD", method)
+    taylor(f"a damped drop, {method}", "z.value", drop, scene, knobs, 0.001)
+    for mark, value, unit in knobs.values():
+        scene = scene.replace(mark, repr(value))
+    Path(fall).write_text(scene)
+    both_ways(f"a damped drop, {method}", "integral(z.value * time)", drop, fall)
+    Path(fall).write_text(scene.replace("locate: true", "locate: loads") + "until: \"time > 1 and z > 0.1\"\n")
+    both_ways(f"a damped drop with loads and an end, {method}", "z.rate", drop, fall)
+# a wheel on the road and a load between stops, which touch at the same time
+hop = str(Path(__file__).resolve().parent.parent / "data/contact/hop.veh")
+for z, s in ((0.1, 0.0), (0.2, 1.0)):
+    Path(fall).write_text(f"gicscene: 1\nduration: 1\nstep: 0.004\nintegrator: rk4\nlocate: true\n"
+                          f"initial: {{coordinates: {{z: {z}, s: 0}}, rates: {{s: {s}}}}}\n")
+    both_ways(f"a hop, {z, s}", "z.value + s.value", hop, fall)
+# a car lands
+jump = """gicscene: 1
+duration: 0.4
+step: 0.002
+integrator: METHOD
+locate: true
+initial: {position: [0, 0, Z], velocity: [VX, 0, 0], coordinates: {spring_f_l: FRONT}, states: {STATES}}
+inputs: {rack: {step: {to: RACK, rise: 0.2}}}
+""".replace("STATES", ", ".join(f"tire_{a}_{b}.spin: 22" for a in "fr" for b in "lr"))
+knobs = {"initial/z": ("Z", 0.6, 0.05), "initial/x.rate": ("VX", 10.0, 0.5), "initial/spring_f_l": ("FRONT", 0.25, 0.01), "input/rack[1]": ("RACK", 0.01, 0.005)}
+for method in ("rk4", "ab3\nratio: 4"):
+    scene = jump.replace("METHOD", method)
+    taylor(f"a car lands, {method!r}", "chassis.z", f"{models}/hmmwv_tires.veh", scene, knobs, 0.004)
+    for mark, value, unit in knobs.values():
+        scene = scene.replace(mark, repr(value))
+    Path(fall).write_text(scene)
+    value = gradient("chassis.z", f"{models}/hmmwv_tires.veh", fall, "initial/z")[0]
+    last = gic("-q", "--general", f"{models}/hmmwv_tires.veh", fall, "-o", "-").splitlines()
+    column = [name.split(" [")[0] for name in last[0].split(",")].index("chassis.z")
+    near(f"a car lands, {method!r}: the run's own z", value, float(last[-1].split(",")[column]), 1e-10)
+    both_ways(f"a car lands, {method!r}", "chassis.y + chassis.z", f"{models}/hmmwv_tires.veh", fall, list(knobs) + ["initial/roll", "initial/pitch.rate"])
 
 # ---- vehicles ------------------------------------------------------------------------------------------------------------------
 

@@ -1,0 +1,226 @@
+/* SPDX-License-Identifier: MIT
+ * Contacts that are located within steps, in a run with derivatives. The runtime core finds them (gic_runtime.c), by
+ * steps of both without derivatives; which pieces it has made in the end is seen from the times at which it evaluates
+ * rates. Then the step is made again in these pieces, whose ends are clocks where the number of a contact is 0.
+ * Pieces that end elsewhere, as where a contact comes near, or parts of loads that bend, stay where they are. */
+#include "engine/engine.h"
+#include "gic_runtime.h"
+#include "run/tangent_private.h"
+#include "tape/engine_tape.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+/* Made by RK4 in `parts` parts, of `start` to `end`, s. */
+typedef struct Piece {
+    double start, end;
+    int parts;
+} Piece;
+
+typedef struct Watch {
+    Saved *before, *after, *here;
+    bool looking, kept_plain; /* the core looks at contacts, after the step itself */
+    double *time;             /* of evaluations since then or since the last look */
+    int times;
+    Piece *piece;
+    int pieces;
+} Watch;
+
+/* The piece that the last evaluations are of, which ends at `end`; returns its parts, 0: they are of none. */
+static int piece_of(const Watch *watch, double end, Piece *piece)
+{
+    int parts = 0;
+    double at = end;
+    for (int i = watch->times - 4; i >= 0; i -= 4, ++parts) {
+        const double *t = watch->time + i, near = 1e-6 * (t[3] - t[0]) + 8 * DBL_EPSILON * fabs(end);
+        if (!(t[3] > t[0]) || fabs(t[3] - at) > near || fabs(t[1] - t[2]) > near || fabs(2 * t[1] - t[0] - t[3]) > near)
+            break;
+        at = t[0];
+    }
+    *piece = (Piece){at, end, parts};
+    return parts;
+}
+
+void tangent_contacts_see(const TangentRun *run, double time)
+{
+    Watch *watch = run->happened.watch;
+    if (watch && watch->looking)
+        *POOL_PUSH(run->pool, watch->time, watch->times) = time;
+}
+
+/* Numbers of the contacts of both: those of the vehicle. The first look after a step ends what counts of the step. */
+static int press_of_both(void *self, double time, const double *state, double *press)
+{
+    TangentRun *run = (TangentRun *)(uintptr_t)((Both *)self)->run;
+    Watch *watch = run->happened.watch;
+    double *own = tape_array(run->self, run->code->state_offset);
+    Piece piece;
+    if (watch->looking && piece_of(watch, time, &piece))
+        *POOL_PUSH(run->pool, watch->piece, watch->pieces) = piece;
+    watch->times = 0;
+    watch->looking = run->plain = true;
+    tangent_inputs_of(run, time);
+    tangent_take(run, state, 0, own);
+    return run->code->contacts->press(run->self, time, own, press);
+}
+
+void tangent_contacts_make(TangentRun *run, gic_model *descriptor, size_t *at)
+{
+    const gic_model *code = run->code;
+    if (!run->scene->locate || !code->contacts)
+        return;
+    gic_contacts *contacts = pool_alloc(run->pool, sizeof *contacts);
+    *contacts = (gic_contacts){.name = code->contacts->name, .past_offset = *at, .press = press_of_both};
+    *at += 2 * (size_t)code->contact_count * sizeof(double);
+    descriptor->contact_count = code->contact_count;
+    descriptor->contacts = contacts;
+    run->happened.watch = pool_alloc(run->pool, sizeof *run->happened.watch);
+    *run->happened.watch = (Watch){.before = NULL};
+}
+
+void tangent_contacts_begin(TangentRun *run)
+{
+    Watch *watch = run->happened.watch;
+    run->remade = false;
+    if (!watch)
+        return;
+    if (!watch->before) {
+        watch->before = tangent_saved_new(run);
+        watch->after = tangent_saved_new(run);
+        watch->here = tangent_saved_new(run);
+    }
+    watch->looking = false;
+    run->both->head.locate = run->scene->locate;
+    run->both->head.most = run->scene->most_work;
+}
+
+void tangent_contacts_before(TangentRun *run, const TrailStep *next)
+{
+    Watch *watch = run->happened.watch;
+    run->remade = false;
+    if (!watch || !run->both->head.locate)
+        return;
+    watch->kept_plain = run->plain;
+    watch->looking = false;
+    watch->pieces = watch->times = 0;
+    tangent_save(run, watch->before, next);
+    if (run->trail && !run->plain) /* the step that is being made is the last one of the trail */
+        --watch->before->mark.steps;
+}
+
+/* How far the state is from where the number of a contact is 0, s, by its slope; guard: of the contact, -1: the one
+ * that is nearest, which it becomes. Without derivatives. */
+static int find_off(TangentRun *run, int *guard, double *off)
+{
+    const int conditions = run->happened.conditions, n = run->descriptor.slow_count + run->descriptor.fast_count;
+    const int first = *guard < 0 ? conditions : *guard;
+    const int last = *guard < 0 ? conditions + run->code->contact_count - 1 : *guard;
+    double rate[n + 1], own[run->states + 1];
+    *off = INFINITY;
+    int status =
+        run->descriptor.rhs(run->both, gic_time(run->both), tangent_array(run, run->descriptor.state_offset), rate);
+    tangent_take(run, rate, 0, own);
+    for (int i = first; i <= last && status == GIC_OK; ++i) {
+        double value = 0, slope = 0;
+        status = tangent_guard(run, i, &value);
+        if (status == GIC_OK)
+            status = tangent_guard_slope(run, i, own, 1, -1, &slope);
+        if (!(fabs(value / slope) < fabs(*off)))
+            continue;
+        *off = value / slope;
+        *guard = i;
+    }
+    return status;
+}
+
+/* The contact that ends a piece, if one does, and when: the core comes near it, to some 1e-4 of a step; here its number
+ * has to be 0, as the derivative of its time is that of this zero. */
+static int refine(TangentRun *run, const Piece *piece, double step, TrailStep *next, double *time, int *guard)
+{
+    const double near = 0.01 * step, close = 1e-12 * step + 8 * DBL_EPSILON * fabs(piece->end);
+    double at = piece->end, off = 0;
+    int status = GIC_OK, later;
+    *guard = -1;
+    *time = piece->end;
+    tangent_save(run, run->happened.watch->here, next);
+    run->plain = true;
+    for (int i = 0; i < 20 && status == GIC_OK; ++i) {
+        status = tangent_piece(run, at, piece->parts, -1, -1, next, &later);
+        if (status == GIC_OK)
+            status = find_off(run, guard, &off);
+        tangent_restore(run, run->happened.watch->here, next);
+        if (!(fabs(off) > close) || !(fabs(at - off - piece->end) < near) || !(at - off > piece->start))
+            break;
+        at -= off;
+    }
+    run->plain = false;
+    if (status == GIC_OK && fabs(off) <= close)
+        *time = at;
+    else
+        *guard = -1;
+    return status;
+}
+
+/* The last pieces of those that were made which follow each other from `start` to `end`: chain[pieces], returns how
+ * many, 0: they do not. */
+static int find_chain(const Watch *watch, double start, double end, Piece *chain)
+{
+    const double same = 1e-9 * (end - start) + 8 * DBL_EPSILON * fabs(end);
+    int count = 0;
+    double at = end;
+    for (int i = watch->pieces - 1; i >= 0 && at - start > same; --i)
+        if (fabs(watch->piece[i].end - at) <= same) {
+            chain[count++] = watch->piece[i];
+            at = watch->piece[i].start;
+        }
+    for (int i = 0; i < count / 2; ++i) {
+        const Piece other = chain[i];
+        chain[i] = chain[count - 1 - i];
+        chain[count - 1 - i] = other;
+    }
+    return fabs(at - start) <= same ? count : 0;
+}
+
+int tangent_contacts_after(TangentRun *run, bool *again)
+{
+    Watch *watch = run->happened.watch;
+    *again = false;
+    if (!watch || !run->both->head.locate)
+        return GIC_OK;
+    run->plain = watch->kept_plain;
+    watch->looking = false;
+    if (!watch->pieces || run->plain)
+        return GIC_OK;
+    const double start = gic_time(watch->before->both), end = gic_time(run->both);
+    Piece chain[watch->pieces];
+    TrailStep next;
+    const int count = find_chain(watch, start, end, chain);
+    int late = -1, status = count ? GIC_OK : GIC_ERROR_EVENTS;
+    if (run->rest.going) {
+        run->happened.failed = "a contact that begins or ends in the step in which a condition becomes true";
+        return GIC_ERROR_EVENTS;
+    }
+    tangent_save(run, watch->after, &trail_part);
+    tangent_restore(run, watch->before, &next);
+    run->both->head.locate = 0;
+    for (int i = 0; i < count && status == GIC_OK; ++i) {
+        double to = end;
+        int guard = -1, later;
+        if (i + 1 < count) {
+            chain[i].start = gic_time(run->both);
+            status = refine(run, &chain[i], end - start, &next, &to, &guard);
+        }
+        if (status == GIC_OK)
+            status = tangent_piece(run, to, chain[i].parts, late, guard, &next, &later);
+        late = later;
+    }
+    *again = true;
+    const Both *after = watch->after->both;
+    const size_t past = run->descriptor.contacts->past_offset;
+    memcpy((char *)run->both + past, (const char *)after + past, 2 * (size_t)run->code->contact_count * sizeof(double));
+    run->both->head = after->head;
+    run->both->head.history = 0;
+    tangent_set_inputs(run, end);
+    return status;
+}
