@@ -7,9 +7,10 @@
 #include <string.h>
 
 static const double gravity = 9.80665;
-static const double begin = 5;      /* s straight ahead, or into the circle */
-static const double learns = 0.5;   /* 1/s, how fast the driver on the circle does */
-static const double slowest = 0.95; /* share of the speed below which it is not kept */
+static const double begin = 5;                     /* s straight ahead, or into the circle */
+static const double learns = 0.5;                  /* 1/s, how fast the driver on the circle does */
+static const double rise = 3, hold = 12, look = 3; /* s, on the circle: from level to level, at each; look: its end */
+static const double slowest = 0.95;                /* share of the speed below which it is not kept */
 /* Of the largest lateral acceleration, below which the limit is passed: with steering that grows, and on a circle. */
 static const double past_peak[] = {0.98, 0.9};
 
@@ -23,9 +24,13 @@ typedef struct Limit {
 static bool is_at_limit(void *context, const Trial *trial)
 {
     Limit *limit = context;
-    const double *row = trial->row[trial->rows - 1], ay = limit->sign * row[TRIAL_AY];
-    if (row[TRIAL_TIME] < begin)
+    const double *row = trial->row[trial->rows - 1], now = row[TRIAL_TIME];
+    if (now < begin + (limit->radius > 0 ? look : 0))
         return false;
+    /* On a circle that which belongs to the mean speed of some seconds: a pedal that moves makes the yaw rate dip, a
+     * gear that changes the speed. */
+    const double speed = limit->radius > 0 ? trial_mean(trial, TRIAL_SPEED, now - look, now) : row[TRIAL_SPEED];
+    const double ay = limit->radius > 0 ? speed * speed / limit->radius : limit->sign * row[TRIAL_AY];
     limit->most = fmax(limit->most, ay);
     if (limit->radius == 0 && row[TRIAL_SPEED] < slowest * limit->speed)
         limit->why = "the speed is not kept";
@@ -155,7 +160,6 @@ void manoeuvre_steady_speed(Manoeuvre *m)
 
 /* Speeds over time on a circle: levels of lateral acceleration that are held, then growth to the limit. */
 enum { LEVELS = 5 };
-static const double rise = 3, hold = 12, look = 3; /* s; look: at the end of each level */
 
 static double level(const Manoeuvre *m, int k)
 {
@@ -171,13 +175,14 @@ static const char *speeds(const Manoeuvre *m, double radius, double most, double
 {
     const double spacing = 0.5, high = m->value[2], growth = m->value[3];
     Text times = {.pool = m->pool}, values = {.pool = m->pool};
-    *duration = level_end(LEVELS - 1) + (most - high) / growth;
+    *duration = level_end(LEVELS - 1) + rise / 2 + (most - high) / growth;
     for (double t = 0; t <= *duration + spacing; t += spacing) {
         const int k = (int)fmin(fmax(floor((t - begin) / (rise + hold)), 0), LEVELS - 1);
         const double share = fmin(fmax((t - begin - k * (rise + hold)) / rise, 0), 1);
         const double before = level(m, k > 0 ? k - 1 : 0);
         double ay = before + (level(m, k) - before) * share * share * (3 - 2 * share);
-        ay += growth * fmax(0, t - level_end(LEVELS - 1));
+        const double after = fmax(0, t - level_end(LEVELS - 1)), eased = fmin(after, rise);
+        ay += growth * (eased * eased / (2 * rise) + after - eased);
         text_print(&times, "%s%g", t > 0 ? ", " : "", t);
         text_print(&values, "%s%.12g", t > 0 ? ", " : "", sqrt(ay * radius));
     }
@@ -220,6 +225,10 @@ void manoeuvre_steady_radius(Manoeuvre *m)
                                              side * radius, side * radius));
         const Trial *trial = trial_run(car, side > 0 ? "left" : "right", car_scene(car, duration, start, false, more),
                                        is_at_limit, &limit);
+        const double end = trial->row[trial->rows - 1][TRIAL_TIME],
+                     last = trial_mean(trial, TRIAL_SPEED, end - look, end);
+        if (!limit.why && last * last / radius < past_peak[true] * most)
+            limit.why = "the drive does not reach higher speeds in time";
         const Points points = levels_of(m, trial);
         manoeuvre_keep(m, trial);
         add_results(m, trial, &points, &limit);

@@ -181,6 +181,18 @@ check 'it is told so' says 'tips over\|no step of the steering ends in'
 run --manoeuvre steady-speed "$models/hmmwv_vehicle.veh"
 check 'a speed that is too high' exits 1
 check 'with one that is not' says 'does not keep 22.22 m/s.*' 'remedy: choose a speed that it keeps'
+# two ways to the limit at about the same speed and radius: by a driver, who leaves the circle a little earlier, and with
+# steering that grows; with gears that change on the way
+limit() {
+    run --manoeuvre "$@" -q -o "$work/limit.csv"
+    sed -n 's/^left.limit,//p' "$work/limit.csv"
+}
+on_circle=$(limit steady-radius "$models/hmmwv_vehicle.veh" radius=30)
+with_steering=$(limit steady-speed "$models/hmmwv_vehicle.veh" "speed=$(echo "$on_circle" | awk -F, '{ print sqrt(30 * $1) }')")
+check "the limit on a circle is that at constant speed, $on_circle, $with_steering" \
+    awk -v a="${on_circle%%,*}" -v b="${with_steering%%,*}" 'BEGIN { exit !(a > 4 && a / b > 0.85 && a / b < 1.1) }'
+run --manoeuvre steady-radius "$models/hmmwv_vehicle.veh" radius=80
+check 'a drive that is too weak is told' says 'the drive does not reach higher speeds in time'
 run --manoeuvre steady-radius "$models/hmmwv_tmeasy.veh"
 check 'nothing drives it' says "the model has no input 'accelerator'"
 run --manoeuvre braking "$models/hmmwv.veh"

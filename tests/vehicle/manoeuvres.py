@@ -435,6 +435,8 @@ for side in ("left", "right"):
     check(f"{side}: understeer on a circle", value[f"{side}.understeer"], understeer, 0.02)
     check(f"{side}: roll gradient on a circle", value[f"{side}.roll_gradient"], gain[2] / gain[1], 0.02)
     trace = trials[side]
+    # tires that are linear have no limit below that of the circle, which no pedal's or gear's dip ends
+    check(f"{side}: beyond the levels", min(trace["time"][-1], 85), 85, 1e-12)
     on = (trace["time"] > 15) & (trace["time"] < 70)
     centre = 60 if side == "left" else -60
     check(f"{side}: the circle", np.max(np.abs(np.hypot(trace["x"][on] - trace["x"][0], trace["y"][on] - centre) - 60)), 0, 1, 0.3)
