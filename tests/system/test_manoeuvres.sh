@@ -192,7 +192,7 @@ with_steering=$(limit steady-speed "$models/hmmwv_vehicle.veh" "speed=$(echo "$o
 check "the limit on a circle is that at constant speed, $on_circle, $with_steering" \
     awk -v a="${on_circle%%,*}" -v b="${with_steering%%,*}" 'BEGIN { exit !(a > 4 && a / b > 0.85 && a / b < 1.1) }'
 run --manoeuvre steady-radius "$models/hmmwv_vehicle.veh" radius=80
-check 'a drive that is too weak is told' says 'the drive does not reach higher speeds in time'
+check 'a drive that is too weak is told' prints 'the drive does not reach higher speeds in time'
 run --manoeuvre steady-radius "$models/hmmwv_tmeasy.veh"
 check 'nothing drives it' says "the model has no input 'accelerator'"
 run --manoeuvre braking "$models/hmmwv.veh"
