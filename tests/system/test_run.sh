@@ -68,7 +68,7 @@ for name in a b; do
 done
 tests 1 test_own_a test_own_b
 check 'folders are empty' last '2 passed, 0 failed'
-check 'folders are different ones' [ "$(tr ' ' '\n' <"$work/folders" | sort -u | wc -l)" -eq 4 ]
+check 'a folder for each, and one cache for all' [ "$(tr ' ' '\n' <"$work/folders" | sort -u | wc -l)" -eq 3 ]
 # gone PID...: ended, or a zombie that nobody has asked for yet
 gone() {
     for pid; do
