@@ -371,41 +371,41 @@ static void add_outputs(Making *m)
     }
 }
 
+/* Number k of the parameters of co-simulation's steps. */
+static Variable *add_step_parameter(Making *m, int k, const char *name, const char *unit, const char *description)
+{
+    Variable *v = add(m, KIND_SOLVER, k, name, unit, description);
+    v->causality = "parameter";
+    v->variability = "fixed";
+    v->initial = "exact";
+    return v;
+}
+
+static void add_step_count(Making *m, int k, const char *name, const char *description, int most, int start)
+{
+    Variable *v = add_step_parameter(m, k, name, NULL, description);
+    v->type = TYPE_WHOLE;
+    v->least = 1;
+    v->most = most;
+    set_start(v, start);
+}
+
 static void add_solver(Making *m, bool implicit)
 {
     const Experiment experiment = experiment_of(m->scene);
-    Variable *v = add(m, KIND_SOLVER, 0, "solver.step", "s",
-                      "longest step within a communication step; these are divided into steps of equal length");
-    v->causality = "parameter";
-    v->variability = "fixed";
-    v->initial = "exact";
+    Variable *v =
+        add_step_parameter(m, 0, "solver.step", "s",
+                           "longest step within a communication step; these are divided into steps of equal length");
     v->least = 1e-9;
     set_start(v, experiment.step);
-    v = add(m, KIND_SOLVER, 1, "solver.method", NULL, "integrator of co-simulation");
+    v = add_step_parameter(m, 1, "solver.method", NULL, "integrator of co-simulation");
     v->type = TYPE_METHOD;
-    v->causality = "parameter";
-    v->variability = "fixed";
-    v->initial = "exact";
     set_start(v, experiment.method + 1);
-    v = add(m, KIND_SOLVER, 2, "solver.ratio", NULL,
-            "with AB3: steps of wheels and powertrain in a step of the bodies");
-    v->type = TYPE_WHOLE;
-    v->causality = "parameter";
-    v->variability = "fixed";
-    v->initial = "exact";
-    v->least = 1;
-    v->most = GIC_RATIOS;
-    set_start(v, experiment.ratio);
-    if (!implicit)
-        return;
-    v = add(m, KIND_SOLVER, 3, "solver.keep_jacobian", NULL, "with ROS2, ROS3, IMEX: steps with one Jacobian");
-    v->type = TYPE_WHOLE;
-    v->causality = "parameter";
-    v->variability = "fixed";
-    v->initial = "exact";
-    v->least = 1;
-    v->most = KEEP_MOST;
-    set_start(v, experiment.keep);
+    add_step_count(m, 2, "solver.ratio", "with AB3: steps of wheels and powertrain in a step of the bodies", GIC_RATIOS,
+                   experiment.ratio);
+    if (implicit)
+        add_step_count(m, 3, "solver.keep_jacobian", "with ROS2, ROS3, IMEX: steps with one Jacobian", KEEP_MOST,
+                       experiment.keep);
 }
 
 const Variables *variables_make(Pool *pool, const Formulation *f, const Scene *scene, bool implicit)

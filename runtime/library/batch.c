@@ -53,11 +53,9 @@ int gicl_batch_step(gicl_library *library, gicl_handle batch, double step, int m
     const Vehicles *many = use.thing;
     if (steps < 0)
         return use_end(&use, call_wrong(said, NULL, "the number of steps is negative"));
-    if (vehicles_lack(many, method))
-        return use_end(&use, call_wrong(said,
-                                        "open the model with the integrator ros2, ros3 or imex, by an engine of "
-                                        "generated code",
-                                        "its code has no implicit steps"));
+    const int lacking = vehicles_lack(many, method, said);
+    if (lacking != GICL_OK)
+        return use_end(&use, lacking);
     int first = GIC_OK;
     model_enter(many->model);
     if (many->many)

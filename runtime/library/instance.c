@@ -77,11 +77,9 @@ int gicl_step(gicl_library *library, gicl_handle instance, double step, int meth
     const Vehicles *one = use.thing;
     if (steps < 0)
         return use_end(&use, call_wrong(said, NULL, "the number of steps is negative"));
-    if (vehicles_lack(one, method))
-        return use_end(&use, call_wrong(said,
-                                        "open the model with the integrator ros2, ros3 or imex, by an engine of "
-                                        "generated code",
-                                        "its code has no implicit steps"));
+    const int lacking = vehicles_lack(one, method, said);
+    if (lacking != GICL_OK)
+        return use_end(&use, lacking);
     model_enter(one->model);
     const int status =
         call_status(said, one->code, vehicle_of(one, 0), vehicle_step(one, 0, step, method, ratio, steps), "step");

@@ -216,8 +216,7 @@ const Model *model_once(OpenModel *open, Pool *pool)
 
 bool model_implicit(const OpenModel *model)
 {
-    const int32_t method = model->integrator ? integrator_method(model->integrator) : GIC_AB3;
-    return method >= GIC_ROS2 && method <= GIC_IMEX;
+    return model->integrator && method_implicit(integrator_method(model->integrator));
 }
 
 static void open_engine(void *context)

@@ -191,9 +191,12 @@ int vehicle_start(const Vehicles *vehicles, int v, const double *parameter)
     return status;
 }
 
-bool vehicles_lack(const Vehicles *vehicles, int method)
+int vehicles_lack(const Vehicles *vehicles, int method, gicl_messages *said)
 {
-    return method >= GIC_ROS2 && method <= GIC_IMEX && !vehicles->code->implicit;
+    if (!method_implicit(method) || vehicles->code->implicit)
+        return GICL_OK;
+    return call_wrong(said, "open the model with the integrator ros2, ros3 or imex, by an engine of generated code",
+                      "its code has no implicit steps");
 }
 
 int vehicle_step(const Vehicles *vehicles, int v, double step, int method, int ratio, int64_t steps)
@@ -224,7 +227,7 @@ int vehicle_outputs(const Vehicles *vehicles, int v)
 void lanes_step(const Vehicles *vehicles, double step, int method, int ratio, int64_t steps)
 {
     const gic_batch_model *many = vehicles->many;
-    const bool implicit = many->model->implicit && method >= GIC_ROS2 && method <= GIC_IMEX;
+    const bool implicit = many->model->implicit && method_implicit(method);
     const bool known = ratio == 1 ? method == GIC_AB3 || method == GIC_RK4 || implicit : ratio > 1 && method == GIC_AB3;
     for (int v = 0; v < vehicles->count && !known; ++v)
         vehicle_of(vehicles, v)->status = GIC_ERROR_ARGUMENT;

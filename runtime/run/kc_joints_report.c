@@ -23,7 +23,6 @@ struct KcCarrying {
     bool *seen;                   /* [axles][joints + 1] at the positions that are looked at */
     bool set_up_alone;            /* only the rows at set-up that tables show are looked at */
 };
-typedef KcCarrying Carrying;
 
 /* Cases that tables and pages show, and by how much of the load. The first DRAWN are those of pages. */
 static const struct {
@@ -40,7 +39,7 @@ static const struct {
              {KC_BY_LOADS + 2 * KC_ALIGNING + 1, "opp. align.", 100}};
 enum { SHOWN = sizeof shown / sizeof *shown, DRAWN = KC_CASES_DRAWN };
 
-static const KcCarried *carried_at(const Carrying *c, int axle, KcMotion motion, int row, int by, int j)
+static const KcCarried *carried_at(const KcCarrying *c, int axle, KcMotion motion, int row, int by, int j)
 {
     return &c->at[axle][motion][((size_t)row * KC_CASES + (size_t)by) * (size_t)(c->joints->joints + 1) + (size_t)j];
 }
@@ -51,13 +50,13 @@ static double number_of(const KcCarried *carried)
     return isnan(carried->along) ? norm3(carried->force) : carried->along;
 }
 
-static bool *seen_of(const Carrying *c, int axle)
+static bool *seen_of(const KcCarrying *c, int axle)
 {
     return c->seen + axle * (c->joints->joints + 1);
 }
 
 /* The motion whose row at set-up tables show; false: the axle can't be moved. */
-static bool usual(const Carrying *c, int axle, KcMotion *motion, int *row)
+static bool usual(const KcCarrying *c, int axle, KcMotion *motion, int *row)
 {
     for (KcMotion m = 0; m < KC_MOTIONS; ++m)
         if (c->at[axle][m]) {
@@ -68,7 +67,7 @@ static bool usual(const Carrying *c, int axle, KcMotion *motion, int *row)
     return false;
 }
 
-static void find_all(Carrying *c, const Kc *kc)
+static void find_all(KcCarrying *c, const Kc *kc)
 {
     const KcJoints *k = c->joints;
     const size_t size = (size_t)KC_CASES * (size_t)(k->joints + 1);
@@ -95,10 +94,10 @@ static void find_all(Carrying *c, const Kc *kc)
     }
 }
 
-static Carrying open_all(Pool *pool, const Model *model, const Scene *scene, const Request *request,
-                         const KcStudy *study)
+static KcCarrying open_all(Pool *pool, const Model *model, const Scene *scene, const Request *request,
+                           const KcStudy *study)
 {
-    Carrying c = {.pool = pool, .study = study};
+    KcCarrying c = {.pool = pool, .study = study};
     c.set_up_alone = !request->report && (request->compare || request->varied || !request->results);
     KcMotion motion;
     int row;
@@ -114,7 +113,7 @@ static Carrying open_all(Pool *pool, const Model *model, const Scene *scene, con
 
 /* ---- a table -------------------------------------------------------------------------------------------- */
 
-static void print_axle(Text *out, const Carrying *c, int a)
+static void print_axle(Text *out, const KcCarrying *c, int a)
 {
     const KcAxle *axle = &c->study->kc->axle[a];
     KcMotion motion;
@@ -143,7 +142,7 @@ static void print_axle(Text *out, const Carrying *c, int a)
 static const char *const component[6] = {"force.x", "force.y", "force.z", "torque.x", "torque.y", "torque.z"};
 
 /* Does any axle load a joint? */
-static bool seen_anywhere(const Carrying *c, int j)
+static bool seen_anywhere(const KcCarrying *c, int j)
 {
     for (int a = 0; a < c->study->kc->axles; ++a)
         if (seen_of(c, a)[j])
@@ -159,7 +158,7 @@ static void cell(Csv *csv, double value)
         csv_number(csv, value + 0.0);
 }
 
-static void write_row(Csv *csv, const Carrying *c, int a, KcMotion m, int r, int by)
+static void write_row(Csv *csv, const KcCarrying *c, int a, KcMotion m, int r, int by)
 {
     const Kc *kc = c->study->kc;
     const KcAxle *axle = &kc->axle[a];
@@ -185,7 +184,7 @@ static void write_row(Csv *csv, const Carrying *c, int a, KcMotion m, int r, int
     csv_end_row(csv);
 }
 
-static void write_csv(const Carrying *c, const char *path)
+static void write_csv(const KcCarrying *c, const char *path)
 {
     static const char *const first[] = {"axle", "motion", "travel", "steering", "load", "opposed", "unit", "holds"};
     const Kc *kc = c->study->kc;
@@ -214,14 +213,14 @@ static void write_csv(const Carrying *c, const char *path)
 /* ---- numbers with names --------------------------------------------------------------------------------- */
 
 /* Of number_of() by a unit of the load: N, or N m of a steering that turns; by N m of an aligning load. */
-static const char *unit_of(const Carrying *c, const KcAxle *axle, int j, int by)
+static const char *unit_of(const KcCarrying *c, const KcAxle *axle, int j, int by)
 {
     static const char *const unit[2][3] = {{"N", "1", "1/m"}, {"N m", "m", "1"}};
     const bool turns = j == c->joints->joints && c->study->kc->model->coordinate[axle->steer].type == COORDINATE_ANGLE;
     return unit[turns][by < KC_BY_LOADS ? 0 : kc_case_load(by) == KC_ALIGNING ? 2 : 1];
 }
 
-Sheet kc_carrying_sheet(const Carrying *c, const Model *model)
+Sheet kc_carrying_sheet(const KcCarrying *c, const Model *model)
 {
     Sheet sheet = {.pool = c->pool, .model = model};
     for (int a = 0; a < c->study->kc->axles; ++a) {
@@ -259,12 +258,12 @@ Sheet kc_carrying_sheet(const Carrying *c, const Model *model)
 const KcCarrying *kc_carrying(Pool *pool, const Model *model, const Scene *scene, const Request *request,
                               const KcStudy *study)
 {
-    Carrying *c = pool_alloc(pool, sizeof *c);
+    KcCarrying *c = pool_alloc(pool, sizeof *c);
     *c = open_all(pool, model, scene, request, study);
     return c;
 }
 
-const char *kc_carrying_curve(const Carrying *c, int axle, KcMotion motion, int drawn, int j, double *y,
+const char *kc_carrying_curve(const KcCarrying *c, int axle, KcMotion motion, int drawn, int j, double *y,
                               const char **title, const char **unit)
 {
     const KcAxle *of = &c->study->kc->axle[axle];
@@ -282,7 +281,7 @@ const char *kc_carrying_curve(const Carrying *c, int axle, KcMotion motion, int 
 
 /* ---- the page ------------------------------------------------------------------------------------------- */
 
-static void draw_motion(Text *out, const Carrying *c, int a, const KcCurve *of)
+static void draw_motion(Text *out, const KcCarrying *c, int a, const KcCurve *of)
 {
     const Kc *kc = c->study->kc;
     const KcAxle *axle = &kc->axle[a];
@@ -313,7 +312,7 @@ static void draw_motion(Text *out, const Carrying *c, int a, const KcCurve *of)
 
 static void write_axles(void *context, Text *out, int indent)
 {
-    const Carrying *c = context;
+    const KcCarrying *c = context;
     (void)indent;
     kc_stops_html(out, c->study, NULL);
     for (int a = 0; a < c->study->kc->axles; ++a) {
@@ -329,7 +328,7 @@ static void write_axles(void *context, Text *out, int indent)
 
 static void write_identity(void *context, Text *out, int indent)
 {
-    const Carrying *c = context;
+    const KcCarrying *c = context;
     (void)indent;
     text_print(out, "<p>");
     text_html(out, c->study->kc->model->name);
@@ -341,7 +340,7 @@ static void write_identity(void *context, Text *out, int indent)
 static const Insertion points[] = {{"identity", write_identity}, {"axles", write_axles}, {NULL, NULL}};
 static const Insertions page_points = {(const char *const[]){"kc.html.in", NULL}, points, NULL};
 
-static void write_page(Carrying *c, const char *path)
+static void write_page(KcCarrying *c, const char *path)
 {
     Text out = {.pool = c->pool};
     templates_check(c->pool, NULL, (const Insertions *const[]){&page_points, NULL});
@@ -352,13 +351,13 @@ static void write_page(Carrying *c, const char *path)
 /* ---- the page of two ------------------------------------------------------------------------------------ */
 
 typedef struct Both {
-    const Carrying *of[2];
+    const KcCarrying *of[2];
     const char *name[2];
     const Sheet *sheet;
 } Both;
 
 /* The axle of a name, in a motion that it can make; -1: there is none. */
-static int axle_of(const Carrying *c, const char *name, KcMotion m)
+static int axle_of(const KcCarrying *c, const char *name, KcMotion m)
 {
     for (int a = 0; a < c->study->kc->axles; ++a)
         if (!strcmp(c->study->kc->axle[a].name, name))
@@ -367,7 +366,7 @@ static int axle_of(const Carrying *c, const char *name, KcMotion m)
 }
 
 /* What a joint of that name carries in all drawn cases, y [DRAWN][rows]. Returns its unit; NULL: no load reaches it. */
-static const char *find_carried(const Carrying *c, int a, KcMotion m, const char *name, int rows, double *y)
+static const char *find_carried(const KcCarrying *c, int a, KcMotion m, const char *name, int rows, double *y)
 {
     const char *title, *unit, *own;
     for (int j = 0; (own = kc_carrying_curve(c, a, m, 0, j, y, &title, &unit)); ++j) {
@@ -429,7 +428,7 @@ static void draw_both(Text *out, const Both *both, const char *name, KcMotion m)
     text_print(out, "</h3>\n<div class=\"curves\">\n");
     for (int k = 0; k < 2; ++k)
         for (int j = 0; axle[k] >= 0 && j <= both->of[k]->joints->joints; ++j) {
-            const Carrying *c = both->of[k], *first = both->of[0];
+            const KcCarrying *c = both->of[k], *first = both->of[0];
             const char *joint = kc_joint_name(c->joints, &c->study->kc->axle[axle[k]], j);
             bool drawn = !seen_of(c, axle[k])[j];
             for (int i = 0; k && axle[0] >= 0 && i <= first->joints->joints; ++i)
@@ -481,13 +480,13 @@ static void write_page_of_both(Pool *pool, Both *both, const char *path)
     file_write(path, out.s, out.size);
 }
 
-static void compare(Pool *pool, const Model *model, const Carrying *c, const Request *request)
+static void compare(Pool *pool, const Model *model, const KcCarrying *c, const Request *request)
 {
     const char *name;
     const Model *model_of_other = sheet_other(pool, model, request->compare, &name);
     const KcStudy study = kc_study(pool, model_of_other, NULL, request);
     kc_must_move(model_of_other, &study);
-    const Carrying other = open_all(pool, model_of_other, NULL, request, &study);
+    const KcCarrying other = open_all(pool, model_of_other, NULL, request, &study);
     Sheet sheet = kc_carrying_sheet(c, model);
     const Sheet beside = kc_carrying_sheet(&other, model_of_other);
     sheet_compare(&sheet, &beside, name);
@@ -503,7 +502,7 @@ void kc_joints_report(Pool *pool, const Model *model, const Scene *scene, const 
 {
     const KcStudy study = kc_study(pool, model, scene, request);
     kc_must_move(model, &study);
-    Carrying c = open_all(pool, model, scene, request, &study);
+    KcCarrying c = open_all(pool, model, scene, request, &study);
     if (request->compare) {
         compare(pool, model, &c, request);
         return;

@@ -333,8 +333,9 @@ const char *car_pedals(TestCar *car, const char *target)
     if (car->settling && car->pedals.speed != car->settled) {
         gsl_errors_return();
         PedalDriver driver = pedal_driver_first;
-        car->pedals = find_driver(car, &driver) ? driver : pedal_driver_first;
-        car->pedals.found = car->pedals.gain != pedal_driver_first.gain;
+        const bool found = find_driver(car, &driver);
+        car->pedals = found ? driver : pedal_driver_first;
+        car->pedals.found = found;
         car->pedals.speed = car->settled;
     }
     const PedalDriver *driver = &car->pedals;

@@ -112,9 +112,14 @@ const char *integrator_name(int32_t method)
     return integrators[i].name;
 }
 
+bool method_implicit(int32_t method)
+{
+    return method >= GIC_ROS2 && method <= GIC_IMEX;
+}
+
 bool scene_implicit(const Scene *scene)
 {
-    return scene->method >= GIC_ROS2 && scene->method <= GIC_IMEX;
+    return method_implicit(scene->method);
 }
 
 void scene_no_auto(const Scene *scene, const char *what)

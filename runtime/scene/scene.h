@@ -112,7 +112,8 @@ int32_t integrator_method(const char *name);
 const char *integrator_word(int index);
 const char *integrator_name(int32_t method);
 enum { KEEP_MOST = 1000 };               /* steps with one Jacobian */
-bool scene_implicit(const Scene *scene); /* true for methods with implicit steps */
+bool method_implicit(int32_t method);    /* true for methods with implicit steps: GIC_ROS2, GIC_ROS3, GIC_IMEX */
+bool scene_implicit(const Scene *scene); /* the same of its method */
 /* Fail if the scene has the integrator `auto`. what: "a page" */
 void scene_no_auto(const Scene *scene, const char *what);
 /* Fail if the scene has an implicit integrator or `auto`; for what does not take one. what: "a page" */
