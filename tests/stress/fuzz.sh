@@ -46,9 +46,9 @@ for reader in veh formula tir scene road; do
         cp "$file" "$work/$reader/$(echo "${file#"$work/"}" | tr / _)"
     done
     rm -f "$found/$reader"-*
-    # what gicgen reads in 0.6 s takes half a minute with sanitizers and coverage, more on a machine with other work;
+    # what gicgen reads in 0.6 s takes half a minute with sanitizers, coverage and -O1, more without, or beside other work;
     # it ends by a signal or a status that is not 0 at the first finding; leaks are blocks that libyaml keeps until exit
-    READER=$reader ASAN_OPTIONS=detect_leaks=0 "$fuzz" -detect_leaks=0 -dict="$work/words" -timeout=90 \
+    READER=$reader ASAN_OPTIONS=detect_leaks=0 "$fuzz" -detect_leaks=0 -dict="$work/words" -timeout=180 \
         -rss_limit_mb=3000 -max_total_time="$seconds" -print_final_stats=1 -close_fd_mask=2 \
         -artifact_prefix="$found/$reader-" "$work/$reader" >"$work/log" 2>&1
     status=$?
