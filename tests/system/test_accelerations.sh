@@ -113,7 +113,7 @@ for model in "$root"/models/*.veh "$root"/tests/data/laws/*.veh "$work/steered.v
         echo "FAIL $(basename "$model") on waves"
     fi
     # wheels side by side: the same tolerance
-    for lanes in '2' '4 --cflags -march=native\ -ffp-contract=fast'; do
+    for lanes in "2 --cc 'sh $work/cc'" '4 --cflags -march=native\ -ffp-contract=fast'; do
         if eval "'$gicrun'" --engine cc --lanes "$lanes" --eval '"$work/states" "$work/variant.veh" "$work/waves.scene"' \
             -o '"$work/results"' && agrees; then
             passed=$((passed + 1))

@@ -7,8 +7,6 @@ gicrun=$2
 # shellcheck source=tests/lib/checking.sh
 . "$(dirname "$0")/../lib/checking.sh"
 root=$(cd "$(dirname "$0")/../.." && pwd)
-GICGEN_CACHE=
-export GICGEN_CACHE
 
 # shellcheck source=tests/fmi/lib.sh
 . "$(dirname "$0")/../fmi/lib.sh"

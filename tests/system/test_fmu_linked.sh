@@ -8,8 +8,6 @@ gicgen=$1
 # shellcheck source=tests/fmi/small/lib.sh
 . "$(dirname "$0")/../fmi/small/lib.sh"
 root=$(cd "$(dirname "$0")/../.." && pwd)
-GICGEN_CACHE=
-export GICGEN_CACHE
 # other platforms are not what this is about, and take most of the time
 mkdir "$work/without"
 for name in aarch64-linux-gnu-gcc x86_64-w64-mingw32-gcc; do
