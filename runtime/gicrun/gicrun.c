@@ -7,6 +7,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 static const char usage[] =
     "usage: gicrun MODEL.veh SCENE [-o results.csv] [--plot picture.svg|picture.png]\n"
@@ -275,16 +276,16 @@ static Asked read_command_line(int count, char **word)
         usage_fail("gicrun", "--vary goes with --kc, --sheet or --manoeuvre; scenes are varied by gicsweep", NULL);
     if (study->varied && study->trace)
         usage_fail("gicrun", "--vary goes without --trace", NULL);
-    if (study->varied && study->results && path_ends(study->results, ".html"))
-        usage_fail("gicrun", "with --vary a page is made by --report, not by -o", study->results);
+    if ((study->varied || asked.kinematics || study->manoeuvre) && study->results && path_ends(study->results, ".html"))
+        usage_fail("gicrun", "with --kc, --manoeuvre and --vary a page is made by --report, not by -o", study->results);
     if (study->trace && !study->manoeuvre)
         usage_fail("gicrun", "--trace goes with --manoeuvre", NULL);
     if (study->compare && !asked.sheet && !study->manoeuvre && !asked.kinematics)
         usage_fail("gicrun", "--compare goes with --kc, --sheet or --manoeuvre", NULL);
     if (asked.loads && asked.joints)
         usage_fail("gicrun", "one of --loads and --joints, please", NULL);
-    if (asked.loads && ((asked.report && !study->varied) || study->travel > 0))
-        usage_fail("gicrun", "--loads is at the position of set-up: it goes without --travel and --report", NULL);
+    if (asked.loads && study->travel > 0)
+        usage_fail("gicrun", "--loads is at the position of set-up: it goes without --travel", NULL);
     if (asked.report && !path_ends(asked.report, ".html"))
         usage_fail("gicrun", "the page must end in .html, unlike", asked.report);
     const bool runs = !study->states && !asked.rests && !asked.modes && !derives && !asked.kinematics && !asked.sheet &&
@@ -306,6 +307,8 @@ static Asked read_command_line(int count, char **word)
     if (files > 2 && !keyed)
         usage_fail("gicrun", "one model and one scene, please; what is", word[first + 2]);
     asked.model = word[first];
+    if (keyed && strchr(asked.model, '=') && access(asked.model, F_OK) != 0)
+        usage_fail("gicrun", "the model comes before key=value, not after", asked.model);
     study->scene = scenes ? word[first + 1] : NULL;
     if (!strcmp(asked.model, "-"))
         usage_fail("gicrun", "the model must be a file", NULL);

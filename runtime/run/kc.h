@@ -339,6 +339,9 @@ void kc_loads_csv(Pool *pool, const Kc *kc, const char *path);
 void kc_loads_print(Text *out, const Kc *kc, int axle);
 /* Those of all axles that have one, as numbers with names. */
 struct Sheet kc_loads_sheet(Pool *pool, const Model *model, const Kc *kc);
+/* kc_loads_page.c: numbers of that sheet, perhaps with another vehicle's beside (sheet_compare()), as a page with
+ * bars. kc: whose axles without a compliance are told; [1]: of the other one, NULL: none. */
+void kc_loads_page(const struct Sheet *sheet, const Kc *const kc[2], const char *path);
 
 /* ---- kc_report.c: --kc */
 

@@ -517,10 +517,12 @@ static void measure(Kc *kc)
     kc->units = units_of(kc);
 }
 
-/* Leave the axle that is asked for. */
+/* Leave the axle that is asked for. A single one is the foremost and the rearmost one, and takes the name. */
 static void keep(Kc *kc, const char *name)
 {
     const char *names = "";
+    if (kc->axles == 1 && (!strcmp(name, "front") || !strcmp(name, "rear")))
+        kc->axle->name = name;
     for (int i = 0; i < kc->axles; ++i) {
         if (!strcmp(name, kc->axle[i].name) || !strcmp(name, pool_print(kc->pool, "%d", i + 1))) {
             kc->axle += i;

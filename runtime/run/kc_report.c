@@ -254,17 +254,25 @@ const Kc *kc_loads_open(Pool *pool, const Model *model, const Scene *scene, cons
 static void report_loads(Pool *pool, const Model *model, const Scene *scene, const Request *request)
 {
     const Kc *kc = kc_loads_open(pool, model, scene, request);
+    Sheet sheet = kc_loads_sheet(pool, model, kc);
+    const Kc *kc_of_other = NULL;
     if (request->compare) {
         const char *name;
         const Model *model_of_other = sheet_other(pool, model, request->compare, &name);
-        Sheet sheet = kc_loads_sheet(pool, model, kc);
-        const Sheet other =
-            kc_loads_sheet(pool, model_of_other, kc_open(pool, model_of_other, NULL, request->solve, request->axle));
-        sheet_beside(&sheet, &other, name, request->results, ": compliance, models/KC.md defines it");
-        return;
+        kc_of_other = kc_open(pool, model_of_other, NULL, request->solve, request->axle);
+        const Sheet other = kc_loads_sheet(pool, model_of_other, kc_of_other);
+        sheet_compare(&sheet, &other, name);
     }
-    if (request->results) {
+    if (request->report)
+        kc_loads_page(&sheet, (const Kc *const[2]){kc, kc_of_other}, request->report);
+    if (request->results && request->compare)
+        sheet_csv(&sheet, request->results);
+    else if (request->results)
         kc_loads_csv(pool, kc, request->results);
+    if (request->results || request->report)
+        return;
+    if (request->compare) {
+        sheet_print(&sheet, ": compliance, models/KC.md defines it");
         return;
     }
     Text table = {.pool = pool}, *out = &table;

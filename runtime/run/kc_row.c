@@ -98,18 +98,18 @@ static void steering_axis(const KcWheel *wheel, const KcPose *pose, const KcPose
     out[KC_OFFSET_X] = level[0] * forward[0] + level[1] * forward[1];
 }
 
-/* a / b where b is more than rounding, else infinite with the sign of a. */
-static double arm_of(double a, double b, double radius)
+/* sign a / b where b is more than rounding, else infinite: to either side, which has no sign. */
+static double arm_of(double sign, double a, double b, double radius)
 {
-    return fabs(b) * radius > rounding * fabs(a) ? a / b : copysign(INFINITY, a);
+    return fabs(b) * radius > rounding * fabs(a) ? sign * (a / b) : INFINITY;
 }
 
 /* Swing arms of a wheel in a motion of travel. */
 static void swing_arms(const KcAxle *axle, const KcWheel *wheel, const KcPose *rate, double *out)
 {
-    out[KC_FRONT_ARM] = wheel->side * arm_of(rate->contact[2], rate->turn[0], wheel->radius);
+    out[KC_FRONT_ARM] = arm_of(wheel->side, rate->contact[2], rate->turn[0], wheel->radius);
     out[KC_FRONT_ANGLE] = wheel->side * atan(rate->contact[1] / rate->contact[2]);
-    out[KC_SIDE_ARM] = -axle->ahead * arm_of(rate->locked[2], rate->turn[1], wheel->radius);
+    out[KC_SIDE_ARM] = arm_of(-axle->ahead, rate->locked[2], rate->turn[1], wheel->radius);
     out[KC_SIDE_ANGLE] = out[KC_BRAKE_ANGLE] = axle->ahead * atan(rate->locked[0] / rate->locked[2]);
     out[KC_DRIVE_ANGLE] =
         axle->ahead * atan(wheel->shaft ? rate->centre[0] / rate->centre[2] : rate->locked[0] / rate->locked[2]);
@@ -199,7 +199,8 @@ static void of_sides(const KcAxle *axle, const KcLook *look, const double *along
     }
 }
 
-/* The steer angles of both sides against those of a rolling curve about a centre on the line of the fixed axles. */
+/* The steer angles of both sides against those of a rolling curve about a centre on the line of the fixed axles. A
+ * single wheel is left and right: no angle of it is another one's. */
 static void ackermann(const Kc *kc, const KcAxle *axle, const KcLook *look, const double *along, int left, int right,
                       double *out)
 {
@@ -215,17 +216,20 @@ static void ackermann(const Kc *kc, const KcAxle *axle, const KcLook *look, cons
     out[KC_MEAN_STEER] = mean;
     if (change != 0)
         out[KC_RATIO] = 1 / change;
-    const int inner = mean > 0 ? 0 : 1;
+    const double before = (pose[0].contact[0] + pose[1].contact[0]) / 2 - kc->fixed_x;
+    const int inner = mean * before > 0 ? 0 : 1; /* wheels behind turn the vehicle the other way */
     const double *o = pose[1 - inner].contact, *in = pose[inner].contact, turn = angle[1 - inner];
     if (!kc->turns || axle->unit || fabs(mean) < slight || fabs(turn) < slight || turn * mean < 0)
         return;
-    /* the outer wheel's axis meets the line x = fixed_x at `middle` */
+    /* the outer wheel's axis meets the line x = fixed_x at `middle`, for the inner one maybe beyond a quarter turn */
     const double ahead = o[0] - kc->fixed_x, middle = o[1] + ahead / tan(turn);
-    const double ideal = atan((in[0] - kc->fixed_x) / (middle - in[1]));
+    const double ideal = atan2(fabs(in[0] - kc->fixed_x), (inner ? -1 : 1) * (middle - in[1]));
     out[KC_RADIUS] = fabs(ahead / sin(turn));
-    out[KC_ACKERMANN_ERROR] = fabs(angle[inner]) - fabs(ideal);
-    if (fabs(ideal) - fabs(turn) > rounding)
-        out[KC_ACKERMANN] = (fabs(angle[inner]) - fabs(turn)) / (fabs(ideal) - fabs(turn));
+    if (left == right)
+        return;
+    out[KC_ACKERMANN_ERROR] = fabs(angle[inner]) - ideal;
+    if (ideal - fabs(turn) > rounding)
+        out[KC_ACKERMANN] = (fabs(angle[inner]) - fabs(turn)) / (ideal - fabs(turn));
 }
 
 static int first_of(const KcAxle *axle, double side)
@@ -275,6 +279,8 @@ int kc_row(const Kc *kc, const KcAxle *axle, KcMotion motion, const double *w, K
         row->axle[KC_ANTI_BRAKE] = brake * kc->wheelbase / kc->height;
         row->axle[KC_ANTI_DRIVE] = drive * kc->wheelbase / kc->height;
     }
+    if (motion == KC_STEER && n == 1)
+        ackermann(kc, axle, look, along, 0, 0, row->axle);
     if (left < 0 || right < 0)
         return GIC_OK;
     if (!kc_along(axle, look, true, y, 0, roll))

@@ -107,7 +107,7 @@ struct TestCar {
     double com[3];          /* centre of mass at rest, or that of the first unit, in the axes of the base's body */
     int accelerator, brake; /* inputs of unit 1 of these names; -1: the model has none */
     const KcAxle *axle;     /* that is steered; NULL: none, `unsteered` says why */
-    const char *unsteered;
+    const char *unsteered, *steer_remedy;
     int steering;          /* input of the steering coordinate; -1: none */
     double angle;          /* mean road-wheel angle to the left by a unit of it; of wheels behind, to the right */
     double straight;       /* its value straight ahead */
@@ -225,8 +225,9 @@ Manoeuvre manoeuvre_drive(Pool *pool, const Model *model, const Request *request
 const ManoeuvreKey *manoeuvre_key(Pool *pool, const char *manoeuvre, const char *name);
 /* manoeuvre_page.c: the unit in which people read a channel, and the factor to it. */
 const char *manoeuvre_shown(Channel channel, double *scale);
-/* The page. */
-void manoeuvre_page(const Manoeuvre *manoeuvre, const ManoeuvreKind *kind, const char *path);
+/* The page. other: a second vehicle, called `name`, whose curves stand in the same diagrams; NULL: none. */
+void manoeuvre_page(const Manoeuvre *manoeuvre, const Manoeuvre *other, const char *name, const ManoeuvreKind *kind,
+                    const char *path);
 
 /* ---- manoeuvre_steer.c: what manoeuvres by steering share ------------------------------------------------ */
 
@@ -303,6 +304,9 @@ typedef struct LinearResponse LinearResponse;
 const LinearResponse *linear_response(const TestCar *car, double speed);
 /* A RespondAt of it, as context; the coherence is 1. */
 Response linear_response_at(const void *context, Channel channel, double frequency);
+/* manoeuvre_frequency.c: car_angle_by_acceleration() at the speed value[0]; ends in car_refuse() where there is none.
+ */
+double manoeuvre_angle_by_acceleration(Manoeuvre *manoeuvre);
 /* The amplitude, rad, of steering whose lateral acceleration is value[1] steadily, by the linear model at value[0]. */
 double manoeuvre_linear_angle(Manoeuvre *manoeuvre);
 

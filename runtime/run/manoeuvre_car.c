@@ -66,7 +66,7 @@ static void find_travel(TestCar *car)
 static void find_steering(TestCar *car)
 {
     const Model *model = car->model;
-    car->axle = sheet_steered(&car->sheet, &car->angle, &car->unsteered);
+    car->axle = sheet_steered(&car->sheet, &car->angle, &car->unsteered, &car->steer_remedy);
     car->steering = -1;
     if (!car->axle)
         return;
@@ -109,8 +109,7 @@ TestCar *car_open(Pool *pool, const Model *model, const Request *request)
     find_loads(car);
     find_travel(car);
     if (fabs(fabs(e[0]) - 1) > equilibrium_limit)
-        car_refuse(car, "draw the base with `axes` along x, y and z",
-                   "the axes of the base are not those of the drawing");
+        car_refuse(car, "leave out `orientation` of the base", "the axes of the base are not those of the drawing");
     for (int w = 0; w < model->wheels; ++w)
         if (model->wheel[w].tire < 0)
             car_refuse(car, "give its wheels the key `tire`",
@@ -147,8 +146,7 @@ void car_refuse(const TestCar *car, const char *remedy, const char *what)
 void car_need_steering(const TestCar *car)
 {
     if (!car->axle)
-        car_refuse(car, "drive the rack or the steering wheel: `driven: true` in its coordinate",
-                   pool_print(car->pool, "the vehicle can't be steered: %s", car->unsteered));
+        car_refuse(car, car->steer_remedy, pool_print(car->pool, "the vehicle can't be steered: %s", car->unsteered));
 }
 
 void car_need_drive(const TestCar *car)

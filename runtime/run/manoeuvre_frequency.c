@@ -185,7 +185,7 @@ void manoeuvre_responses(Manoeuvre *m, RespondAt *at, const void *context, doubl
     manoeuvre_draw(m, sizeof over / sizeof *over, over);
 }
 
-double manoeuvre_linear_angle(Manoeuvre *m)
+double manoeuvre_angle_by_acceleration(Manoeuvre *m)
 {
     const TestCar *car = m->car;
     const double by_ay = car_angle_by_acceleration(car, m->value[0]);
@@ -195,7 +195,12 @@ double manoeuvre_linear_angle(Manoeuvre *m)
                               "there is no steady response to steering at %.4g m/s: "
                               "the vehicle is not stable straight ahead",
                               m->value[0]));
-    return m->value[1] * by_ay;
+    return by_ay;
+}
+
+double manoeuvre_linear_angle(Manoeuvre *m)
+{
+    return m->value[1] * manoeuvre_angle_by_acceleration(m);
 }
 
 void manoeuvre_frequency(Manoeuvre *m)

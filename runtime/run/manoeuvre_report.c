@@ -340,16 +340,17 @@ void manoeuvre_report(Pool *pool, const Model *model, const Request *request)
 {
     const ManoeuvreKind *kind = kind_of(pool, request->manoeuvre);
     Manoeuvre m = manoeuvre_drive(pool, model, request);
+    const char *name = NULL;
+    Manoeuvre other;
     if (request->compare) {
-        const char *name;
-        const Manoeuvre other = manoeuvre_drive(pool, sheet_other(pool, model, request->compare, &name), request);
+        other = manoeuvre_drive(pool, sheet_other(pool, model, request->compare, &name), request);
         sheet_compare(m.result, other.result, name);
         engine_close(other.car->engine);
     }
     if (request->trace)
         write_trace(&m, request->trace);
     if (request->report)
-        manoeuvre_page(&m, kind, request->report);
+        manoeuvre_page(&m, name ? &other : NULL, name, kind, request->report);
     if (request->results)
         sheet_csv(m.result, request->results);
     else

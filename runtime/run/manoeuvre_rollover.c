@@ -78,8 +78,10 @@ static double when_rolled(const Trial *trial, double from)
     return from + latest;
 }
 
-/* One speed and side; returns the run where it keeps its wheels on the road, else NULL. */
-static const Trial *drive_one(Manoeuvre *m, double speed, double sign, double angle, bool hooks)
+typedef enum Outcome { KEEPS, LIFTS, BREAKS_OFF } Outcome;
+
+/* One speed and side; *run: as it was driven. */
+static Outcome drive_one(Manoeuvre *m, double speed, double sign, double angle, bool hooks, const Trial **run)
 {
     const char *name = pool_print(m->pool, "%s %.4g m/s", sign > 0 ? "left" : "right", speed);
     Hook hook = {.rate = m->value[3] / angle, .turns = INFINITY};
@@ -89,9 +91,14 @@ static const Trial *drive_one(Manoeuvre *m, double speed, double sign, double an
         trial = drive(m, name, speed, sign * angle, &hook);
     }
     manoeuvre_keep(m, trial);
-    if (trial->end && !trial->tipped)
-        sheet_note(m->result, pool_print(m->pool, "%s: %s", name, trial->end));
-    return !trial->tipped && !trial->end && without_load(m, trial) < lifted ? trial : NULL;
+    *run = trial;
+    if (trial->tipped || without_load(m, trial) >= lifted)
+        return LIFTS;
+    if (!trial->end)
+        return KEEPS;
+    sheet_note(m->result,
+               pool_print(m->pool, "%s: %s; so it is not known at which speed it lifts a side", name, trial->end));
+    return BREAKS_OFF;
 }
 
 static void add_side(Manoeuvre *m, double sign, double angle, bool hooks)
@@ -101,19 +108,21 @@ static void add_side(Manoeuvre *m, double sign, double angle, bool hooks)
     const char *side = sign > 0 ? "left" : "right";
     double passed = NAN, fails = NAN;
     const Trial *last = NULL; /* the fastest that keeps its wheels on the road */
-    for (double speed = fmin(from, most); isnan(fails); speed = fmin(speed + faster, most)) {
+    Outcome outcome = KEEPS;
+    for (double speed = fmin(from, most); outcome == KEEPS; speed = fmin(speed + faster, most)) {
+        const Trial *trial;
         const char *why;
         if (!car_keeps(m->car, speed, &why)) {
             sheet_note(s, pool_print(m->pool, "%s: %s", side, why));
             break;
         }
-        const Trial *trial = drive_one(m, speed, sign, angle, hooks);
-        if (trial) {
+        outcome = drive_one(m, speed, sign, angle, hooks, &trial);
+        if (outcome == KEEPS) {
             passed = speed;
             last = trial;
-        } else {
-            fails = speed;
         }
+        if (outcome == LIFTS)
+            fails = speed;
         if (speed >= most)
             break;
     }

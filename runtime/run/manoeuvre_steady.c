@@ -137,9 +137,7 @@ void manoeuvre_steady_speed(Manoeuvre *m)
     car_need_drive(car);
     car_need_brake(car);
     car_settle(car, speed);
-    double by_ay = car_angle_by_acceleration(car, speed);
-    if (isnan(by_ay))
-        by_ay = car->sheet.wheelbase / (speed * speed);
+    const double by_ay = manoeuvre_angle_by_acceleration(m);
     for (int side = 1; side >= -1; side -= 2) {
         const double end = 0.999 * car->range[side > 0], to = side * fmin(most * by_ay, fabs(end));
         const double duration = fabs(to) / by_ay / growth + 1;

@@ -49,10 +49,8 @@ double manoeuvre_find_angle(Manoeuvre *m, double wanted, const AngleSearch *sear
     static const double near_enough = 5e-3; /* of the lateral acceleration that is wanted */
     TestCar *car = m->car;
     const double v = m->value[0], most = 0.999 * fmin(-car->range[0], car->range[1]);
-    double by_ay = car_angle_by_acceleration(car, v), angle, before[2] = {0, 0}, ay = 0;
-    if (isnan(by_ay))
-        by_ay = car->sheet.wheelbase / (v * v);
-    angle = wanted * by_ay;
+    const double by_ay = manoeuvre_angle_by_acceleration(m);
+    double angle = wanted * by_ay, before[2] = {0, 0}, ay = 0;
     for (int k = 0; k < TRIES; ++k) {
         if (!(angle > 0 && angle <= most))
             break;

@@ -35,6 +35,7 @@ typedef struct Sheet {
     int rows, notes;
     SheetRow *row;
     const char *other; /* the name of the vehicle to compare with; NULL: none */
+    const int *number; /* [modes->count] that their rows have, from sheet_follow_modes() on; NULL: 1, 2 and so on */
     const char **note; /* what could not be found, and why; what is to be known of numbers */
 } Sheet;
 
@@ -61,8 +62,8 @@ void sheet_cornering(Sheet *sheet);
 /* The same file: the foremost axle that one driven coordinate steers, and by a unit of it at rest the steer angle, rad,
  * over the wheelbase the curvature without slip, positive to the left: the mean of the axle's wheels, of one behind
  * with the other sign; where this coordinate steers all axles, that of the first less that of the last. NULL: there is
- * none, or it makes no curve, *why. */
-const KcAxle *sheet_steered(const Sheet *sheet, double *angle, const char **why);
+ * none, or it makes no curve, *why and a *remedy. */
+const KcAxle *sheet_steered(const Sheet *sheet, double *angle, const char **why, const char **remedy);
 /* The same file: the steady change z [linear->count] of a unit of the steering coordinate; *falls: the acceleration of
  * the centre of mass downwards, m/s^2, in the motion about which it is taken, NULL: not asked for. Returns a status. */
 int sheet_respond(const Sheet *sheet, int steer, double speed, double *z, double *falls);
@@ -123,6 +124,12 @@ typedef struct SheetShape {
 bool sheet_shape_of(const Sheet *sheet, const Mode *mode, SheetShape *shape);
 /* sheet_match.c: modes of the same shape in both sheets get the same place, and a note where their numbers differ. */
 void sheet_match_modes(Sheet *sheet, Sheet *other);
+/* The same file: shapes of modes that several sheets of one vehicle have, none at first; and the rows of a sheet's
+ * modes get the numbers of the known shapes that they have. Shapes not known yet come after these, with numbers of
+ * their own. */
+typedef struct SheetShapes SheetShapes;
+SheetShapes *sheet_shapes(Pool *pool);
+void sheet_follow_modes(Sheet *sheet, SheetShapes *known);
 /* sheet_shapes.c: a mode's motion as seen from the side and from behind, as SVG; nothing where it can't be found. */
 void sheet_shape(const Sheet *sheet, const Mode *mode, Text *out);
 /* sheet_page.c: the sections but that of the modes as tables; the page. */

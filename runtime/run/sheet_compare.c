@@ -77,7 +77,7 @@ static const SheetRow *beside(const Sheet *sheet, int rows, const SheetRow *row)
 void sheet_compare(Sheet *sheet, const Sheet *other, const char *name)
 {
     const int own = sheet->rows;
-    const char *section = pool_print(sheet->pool, "Only %s has", name);
+    const char *begun = NULL, *section = NULL; /* where the last such row stands, and this one */
     sheet->other = name;
     for (int i = 0; i < own; ++i) {
         const SheetRow *row = beside(other, other->rows, &sheet->row[i]);
@@ -85,12 +85,15 @@ void sheet_compare(Sheet *sheet, const Sheet *other, const char *name)
     }
     for (int k = 0; k < other->rows; ++k) {
         SheetRow row = other->row[k];
+        section = row.section ? row.section : section;
         if (beside(sheet, own, &row))
             continue;
-        row.section = section;
+        row.section = section != begun ? pool_print(sheet->pool, "Only %s has: %s", name, section) : NULL;
+        begun = section;
         row.other = row.value;
         row.value = NAN;
         *POOL_PUSH(sheet->pool, sheet->row, sheet->rows) = row;
-        section = NULL;
     }
+    for (int i = 0; i < other->notes; ++i)
+        sheet_note(sheet, pool_print(sheet->pool, "%s: %s", name, other->note[i]));
 }

@@ -25,16 +25,18 @@ static bool is_left_out(const Linear *linear, int i)
 int sheet_set_in_motion(const Sheet *sheet, Instance *self, double speed)
 {
     const gic_model *code = sheet->found->engine->code;
-    double *state = tape_array(self, code->state_offset), A[9];
+    double *state = tape_array(self, code->state_offset), A[9], drawn[9], ahead[3];
     if (sheet->model->powertrain) { /* in neutral, for in gear the converter drives or brakes wheels that roll freely */
         int32_t *discrete = (int32_t *)(void *)((char *)self + code->discrete_offset);
         discrete[code->free_base + POWERTRAIN_GEAR] = discrete[code->free_base + POWERTRAIN_BEFORE] = 0;
     }
     mat_from_euler(state + 3, A);
+    mat_from_euler(sheet->model->body[BODY_BASE].euler, drawn);
+    apply3(A, drawn, ahead); /* x of the drawing is the first row of `drawn` in the axes of the base */
     double *velocity = state + sheet->found->linear->places + 1;
-    const double level = hypot(A[0], A[3]); /* the base may rest with a pitch, and the road is level */
-    velocity[0] = speed * A[0] / level;
-    velocity[1] = speed * A[3] / level;
+    const double level = hypot(ahead[0], ahead[1]); /* the base may rest with a pitch, and the road is level */
+    velocity[0] = speed * ahead[0] / level;
+    velocity[1] = speed * ahead[1] / level;
     velocity[2] = 0;
     return scene_set_fast(code, NULL, &self->head);
 }
@@ -162,32 +164,34 @@ static const KcAxle *steered_too(const Sheet *sheet, const KcAxle *axle)
     return last;
 }
 
-const KcAxle *sheet_steered(const Sheet *sheet, double *angle, const char **why)
+const KcAxle *sheet_steered(const Sheet *sheet, double *angle, const char **why, const char **remedy)
 {
     Pool *pool = sheet->pool;
     const KcAxle *axle = steered(sheet, why);
     *angle = 0;
+    *remedy = "drive the rack or the steering wheel: `driven: true` in its coordinate";
     if (!axle)
         return NULL;
     const char *name = sheet->model->coordinate[axle->steer].name;
     const Turning turning = turning_of(sheet, axle);
     const KcAxle *last = steered_too(sheet, axle);
     *angle = last ? turning.mean - turning_of(sheet, last).mean : axle->ahead * turning.mean;
-    if (turning.idle)
-        *why =
-            pool_print(pool,
-                       "the wheels of axle %s are steered separately, %s not by %s; join them, as by a rack, or drive "
-                       "them by one coordinate",
-                       axle->name, turning.idle->name, name);
-    else if (fabs(turning.mean) <= slight * turning.most)
+    if (turning.idle) {
+        *why = pool_print(pool, "the wheels of axle %s are steered separately, %s not by %s", axle->name,
+                          turning.idle->name, name);
+        *remedy = "join them, as by a rack, or drive them by one coordinate";
+    } else if (fabs(turning.mean) <= slight * turning.most) {
         *why = pool_print(pool, "%s steers the wheels of axle %s against each other: their mean angle does not change",
                           name, axle->name);
-    else if (!(sheet->wheelbase > 0))
+        *remedy = "join them so that they turn the same way";
+    } else if (!(sheet->wheelbase > 0)) {
         *why = "there is one axle";
-    else if (fabs(*angle) <= slight * turning.most)
+        *remedy = "name a vehicle with axles in front and behind; --kc looks at a single axle";
+    } else if (fabs(*angle) <= slight * turning.most) {
         *why = pool_print(pool, "%s steers axles %s and %s alike, by which the vehicle goes aside and does not turn",
                           name, axle->name, last->name);
-    else
+        *remedy = pool_print(pool, "let %s turn the wheels of axle %s less, or the other way", name, last->name);
+    } else
         return axle;
     return NULL;
 }
@@ -216,10 +220,10 @@ static void look_straight(Sheet *sheet, const KcAxle *axle)
 
 void sheet_cornering(Sheet *sheet)
 {
-    const char *why;
+    const char *why, *remedy;
     double angle;
     const Linear *linear = sheet->found->linear;
-    const KcAxle *axle = sheet_steered(sheet, &angle, &why);
+    const KcAxle *axle = sheet_steered(sheet, &angle, &why, &remedy);
     double *z = pool_alloc(sheet->pool, (size_t)linear->count * sizeof *z);
     if (!axle) {
         sheet_miss(sheet, pool_print(sheet->pool, "cornering: %s", why));

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Modes of two vehicles side by side: those of one shape belong together, whatever their numbers. Shapes are the
- * motions of the base's corners and of the wheels' centres, complex ones; how alike two are is the modal assurance
+ * Modes of two vehicles side by side, or of runs: those of one shape belong together, whatever their order. Shapes are
+ * the motions of the base's corners and of the wheels' centres, complex ones; how alike two are is the modal assurance
  * criterion |a* b|^2 / (a* a b* b), 1 for one shape and 0 for shapes that are perpendicular. */
 #include "run/sheet.h"
 
@@ -20,31 +20,76 @@ static const char *place_of_wheel(const Sheet *sheet, int wheel)
     return NULL;
 }
 
-/* The wheel of the other sheet at the same place of the axle of the same name; -1: there is none. */
-static int wheel_of(const Sheet *sheet, const Sheet *other, int wheel)
+struct SheetShapes {
+    Pool *pool;
+    int count, wheels;
+    SheetShape *shape; /* points 0: not known */
+    bool *swings;
+    const char **place; /* [wheels] */
+};
+
+SheetShapes *sheet_shapes(Pool *pool)
 {
-    const char *place = place_of_wheel(sheet, wheel);
-    for (int w = 0; place && w < other->model->wheels; ++w) {
-        const char *there = place_of_wheel(other, w);
-        if (there && !strcmp(place, there))
-            return w;
+    SheetShapes *shapes = pool_alloc(pool, sizeof *shapes);
+    *shapes = (SheetShapes){.pool = pool};
+    return shapes;
+}
+
+static void name_wheels(SheetShapes *shapes, const Sheet *sheet)
+{
+    shapes->wheels = sheet->model->wheels;
+    shapes->place = pool_alloc(shapes->pool, ((size_t)shapes->wheels + 1) * sizeof *shapes->place);
+    for (int w = 0; w < shapes->wheels; ++w) {
+        const char *place = place_of_wheel(sheet, w);
+        shapes->place[w] = place ? pool_print(shapes->pool, "%s", place) : NULL;
     }
-    return -1;
+}
+
+/* Points of a shape, [points][3], that outlive it. */
+static double (*kept(Pool *pool, int points, double (*of)[3]))[3]
+{
+    double(*copy)[3] = pool_alloc(pool, ((size_t)points + 1) * sizeof *copy);
+    if (points)
+        memcpy(copy, of, (size_t)points * sizeof *copy);
+    return copy;
+}
+
+static void add_shape(SheetShapes *shapes, const SheetShape *shape, bool swings)
+{
+    int swinging = shapes->count;
+    *POOL_PUSH(shapes->pool, shapes->swings, swinging) = swings;
+    *POOL_PUSH(shapes->pool, shapes->shape, shapes->count) = (SheetShape){
+        shape->points,
+        kept(shapes->pool, shape->points, shape->rest),
+        {kept(shapes->pool, shape->points, shape->move[0]), kept(shapes->pool, shape->points, shape->move[1])}};
+}
+
+static const SheetShapes *shapes_of(const Sheet *sheet)
+{
+    SheetShapes *shapes = sheet_shapes(sheet->pool);
+    name_wheels(shapes, sheet);
+    for (int k = 0; k < sheet->modes->count; ++k) {
+        SheetShape shape;
+        if (!sheet_shape_of(sheet, &sheet->modes->mode[k], &shape))
+            shape = (SheetShape){.points = 0};
+        add_shape(shapes, &shape, sheet->modes->mode[k].imaginary > 0);
+    }
+    return shapes;
 }
 
 /* Points of both: the base's corners, then wheels of the same places. pair: [points][2]. Returns their number. */
-static int pair_points(const Sheet *sheet, const Sheet *other, int (*pair)[2])
+static int pair_points(const SheetShapes *a, const SheetShapes *b, int (*pair)[2])
 {
     int points = 0;
     for (int k = 0; k < SHEET_CORNERS; ++k, ++points)
         pair[points][0] = pair[points][1] = k;
-    for (int w = 0; w < sheet->model->wheels; ++w) {
-        const int same = wheel_of(sheet, other, w);
-        if (same < 0)
-            continue;
-        pair[points][0] = SHEET_CORNERS + w;
-        pair[points++][1] = SHEET_CORNERS + same;
-    }
+    for (int w = 0; w < a->wheels; ++w)
+        for (int other = 0; other < b->wheels; ++other)
+            if (a->place[w] && b->place[other] && !strcmp(a->place[w], b->place[other])) {
+                pair[points][0] = SHEET_CORNERS + w;
+                pair[points++][1] = SHEET_CORNERS + other;
+                break;
+            }
     return points;
 }
 
@@ -64,76 +109,110 @@ static double likeness(const SheetShape *a, const SheetShape *b, int (*pair)[2],
     return aa > 0 && bb > 0 ? (re * re + im * im) / (aa * bb) : 0;
 }
 
-static const char *place_of(Pool *pool, const char *name, int mode)
+/* Modes of the same shape, the two most alike first; of equals those of the lowest numbers. partner: [b->count] the
+ * one of a, -1: it has none; by: how alike they are. */
+static void match(Pool *pool, const SheetShapes *a, const SheetShapes *b, int *partner, double *by)
 {
-    const char *dot = strchr(name, '.');
-    return pool_print(pool, "mode %d%s", mode + 1, dot ? dot : "");
+    double *alike_of = pool_alloc(pool, ((size_t)a->count * (size_t)b->count + 1) * sizeof *alike_of);
+    int(*pair)[2] = pool_alloc(pool, (size_t)(SHEET_CORNERS + a->wheels) * sizeof *pair);
+    bool *taken = pool_alloc(pool, ((size_t)a->count + 1) * sizeof *taken);
+    const int points = pair_points(a, b, pair);
+    for (int k = 0; k < b->count; ++k)
+        partner[k] = -1;
+    for (int i = 0; i < a->count; ++i)
+        for (int k = 0; k < b->count; ++k)
+            if (a->swings[i] == b->swings[k] && a->shape[i].points && b->shape[k].points)
+                alike_of[i * b->count + k] = likeness(&a->shape[i], &b->shape[k], pair, points);
+    for (;;) {
+        int best[2] = {-1, -1};
+        for (int i = 0; i < a->count; ++i)
+            for (int k = 0; k < b->count; ++k)
+                if (!taken[i] && partner[k] < 0 && alike_of[i * b->count + k] > alike &&
+                    (best[0] < 0 || alike_of[i * b->count + k] > alike_of[best[0] * b->count + best[1]] * (1 + 1e-9))) {
+                    best[0] = i;
+                    best[1] = k;
+                }
+        if (best[0] < 0)
+            return;
+        taken[best[0]] = true;
+        partner[best[1]] = best[0];
+        by[best[1]] = alike_of[best[0] * b->count + best[1]];
+    }
 }
 
-/* Rows of modes get places: of a mode of the other sheet that of its partner, or one of its own. */
-static void put_places(Sheet *sheet, const int *partner, int apart)
+/* The number, from 1, that a mode's rows have. */
+static int number_of(const Sheet *sheet, int mode)
 {
-    for (int i = 0; i < sheet->rows; ++i) {
-        int mode = 0, end = 0;
-        for (int k = 0; k < sheet->modes->count && !end; ++k) {
-            const char *start = pool_print(sheet->pool, "mode_%d.", k + 1);
-            if (!strncmp(sheet->row[i].name, start, strlen(start))) {
-                mode = k;
-                end = 1;
-            }
-        }
-        if (!end)
-            continue;
-        sheet->row[i].place = place_of(sheet->pool, sheet->row[i].name,
-                                       !partner             ? mode
-                                       : partner[mode] >= 0 ? partner[mode]
-                                                            : apart + mode);
+    return sheet->number ? sheet->number[mode] : mode + 1;
+}
+
+/* The mode of a row; -1: it is of none. *of: what follows its number. */
+static int mode_of(const Sheet *sheet, const SheetRow *row, const char **of)
+{
+    for (int k = 0; k < sheet->modes->count; ++k) {
+        const char *start = pool_print(sheet->pool, "mode_%d.", number_of(sheet, k));
+        *of = row->name + strlen(start);
+        if (!strncmp(row->name, start, strlen(start)))
+            return k;
     }
+    return -1;
 }
 
 void sheet_match_modes(Sheet *sheet, Sheet *other)
 {
     if (!sheet->modes || !other->modes)
         return;
-    const int own = sheet->modes->count, theirs = other->modes->count;
     Pool *pool = sheet->pool;
-    SheetShape *shape[2] = {pool_alloc(pool, ((size_t)own + 1) * sizeof *shape[0]),
-                            pool_alloc(pool, ((size_t)theirs + 1) * sizeof *shape[1])};
-    int(*pair)[2] = pool_alloc(pool, (size_t)(SHEET_CORNERS + sheet->model->wheels) * sizeof *pair);
-    int *partner = pool_alloc(pool, ((size_t)theirs + 1) * sizeof *partner);
-    double *alike_of = pool_alloc(pool, ((size_t)own * (size_t)theirs + 1) * sizeof *alike_of);
-    const int points = pair_points(sheet, other, pair);
-    bool taken[own + 1];
-    memset(taken, 0, sizeof taken);
-    for (int k = 0; k < theirs; ++k)
-        partner[k] = -1;
-    for (int i = 0; i < own; ++i)
-        for (int k = 0; k < theirs; ++k) {
-            const bool swings = sheet->modes->mode[i].imaginary > 0;
-            if (!k && !sheet_shape_of(sheet, &sheet->modes->mode[i], &shape[0][i]))
-                shape[0][i].points = 0;
-            if (!i && !sheet_shape_of(other, &other->modes->mode[k], &shape[1][k]))
-                shape[1][k].points = 0;
-            if (swings == (other->modes->mode[k].imaginary > 0) && shape[0][i].points && shape[1][k].points)
-                alike_of[i * theirs + k] = likeness(&shape[0][i], &shape[1][k], pair, points);
-        }
-    for (;;) { /* the two most alike first; of equals those of the lowest numbers */
-        int best[2] = {-1, -1};
-        for (int i = 0; i < own; ++i)
-            for (int k = 0; k < theirs; ++k)
-                if (!taken[i] && partner[k] < 0 && alike_of[i * theirs + k] > alike &&
-                    (best[0] < 0 || alike_of[i * theirs + k] > alike_of[best[0] * theirs + best[1]] * (1 + 1e-9))) {
-                    best[0] = i;
-                    best[1] = k;
-                }
-        if (best[0] < 0)
-            break;
-        taken[best[0]] = true;
-        partner[best[1]] = best[0];
-        if (best[0] != best[1])
-            sheet_note(sheet, pool_print(pool, "mode %d has the shape of the other's mode %d, by %.2f", best[0] + 1,
-                                         best[1] + 1, alike_of[best[0] * theirs + best[1]]));
+    const SheetShapes *own = shapes_of(sheet), *theirs = shapes_of(other);
+    int *partner = pool_alloc(pool, ((size_t)theirs->count + 1) * sizeof *partner);
+    double *by = pool_alloc(pool, ((size_t)theirs->count + 1) * sizeof *by);
+    const char *of;
+    match(pool, own, theirs, partner, by);
+    for (int i = 0; i < own->count; ++i)
+        for (int k = 0; k < theirs->count; ++k)
+            if (partner[k] == i && number_of(sheet, i) != number_of(other, k))
+                sheet_note(sheet, pool_print(pool, "mode %d has the shape of the other's mode %d, by %.2f",
+                                             number_of(sheet, i), number_of(other, k), by[k]));
+    for (int i = 0; i < sheet->rows; ++i) {
+        const int mode = mode_of(sheet, &sheet->row[i], &of);
+        if (mode >= 0)
+            sheet->row[i].place = pool_print(pool, "mode %d.%s", number_of(sheet, mode), of);
     }
-    put_places(sheet, NULL, 0);
-    put_places(other, partner, own);
+    for (int i = 0; i < other->rows; ++i) {
+        const int mode = mode_of(other, &other->row[i], &of);
+        if (mode >= 0 && partner[mode] >= 0)
+            other->row[i].place = pool_print(pool, "mode %d.%s", number_of(sheet, partner[mode]), of);
+        else if (mode >= 0)
+            other->row[i].place = pool_print(pool, "the other's mode %d.%s", number_of(other, mode), of);
+    }
+}
+
+void sheet_follow_modes(Sheet *sheet, SheetShapes *known)
+{
+    if (!sheet->modes)
+        return;
+    Pool *pool = sheet->pool;
+    const SheetShapes *own = shapes_of(sheet);
+    int *partner = pool_alloc(pool, ((size_t)own->count + 1) * sizeof *partner);
+    int *number = pool_alloc(pool, ((size_t)own->count + 1) * sizeof *number);
+    double *by = pool_alloc(pool, ((size_t)own->count + 1) * sizeof *by);
+    if (!known->place)
+        name_wheels(known, sheet);
+    match(pool, known, own, partner, by);
+    for (int k = 0; k < own->count; ++k) {
+        if (partner[k] < 0)
+            add_shape(known, &own->shape[k], own->swings[k]);
+        number[k] = partner[k] < 0 ? known->count : partner[k] + 1;
+    }
+    for (int i = 0; i < sheet->rows; ++i) {
+        SheetRow *row = &sheet->row[i];
+        const char *of;
+        const int mode = mode_of(sheet, row, &of);
+        if (mode < 0)
+            continue;
+        row->name = pool_print(pool, "mode_%d.%s", number[mode], of);
+        row->title =
+            pool_print(pool, "%.*s%d", (int)(strrchr(row->title, ' ') + 1 - row->title), row->title, number[mode]);
+    }
+    sheet->number = number;
 }

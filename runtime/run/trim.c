@@ -478,8 +478,10 @@ static _Noreturn void fail_straight(const Work *w, const Scene *scene, const cha
                        : any       ? pool_print(w->pool, " in a forward gear; in gear %d", powertrain->forward)
                                    : pool_print(w->pool, " in gear %d", w->trim->goal.gear);
     diag_fail(place_of(w, scene),
-              powertrain ? "take another speed or gear; --manoeuvre acceleration tells what it can do"
-                         : "take another speed; an input that drives is `accelerator`, or drive=NAME",
+              fabs(w->model->body[BODY_BASE].euler[0]) < 1 - 1e-12
+                  ? "it drives along x of the base's own frame, which `orientation` turns from that of the drawing"
+              : powertrain ? "take another speed or gear; --manoeuvre acceleration tells what it can do"
+                           : "take another speed; an input that drives is `accelerator`, or drive=NAME",
               "no steady driving at %.6g m/s straight ahead%s: %s", w->trim->goal.speed, gear, why);
 }
 

@@ -85,6 +85,8 @@ const char *study_note(const StudySweep *sweep, const StudyNote *note)
 static void make_runs(StudySweep *sweep)
 {
     bool any = false;
+    for (int who = 0; who < 2; ++who)
+        sweep->shapes[who] = sheet_shapes(sweep->pool);
     sweep->run = pool_alloc(sweep->pool, (size_t)sweep->plan.runs * sizeof *sweep->run);
     for (int64_t r = 0; r < sweep->plan.runs; ++r) {
         diag_progress(pool_print(sweep->pool, "%lld of %lld", (long long)r + 1, (long long)sweep->plan.runs));

@@ -95,7 +95,10 @@ static void make_one(void *context)
     case STUDY_KC:
     case STUDY_JOINTS: make_kc(making, model, scene, &request); break;
     case STUDY_LOADS: making->sheet = kc_loads_sheet(pool, model, kc_loads_open(pool, model, scene, &request)); break;
-    case STUDY_SHEET: making->sheet = sheet_study(pool, model, scene, &request); break;
+    case STUDY_SHEET:
+        making->sheet = sheet_study(pool, model, scene, &request);
+        sheet_follow_modes(&making->sheet, sweep->shapes[making->who]);
+        break;
     case STUDY_MANOEUVRE: {
         const Manoeuvre manoeuvre = manoeuvre_drive(pool, model, &request);
         making->sheet = *manoeuvre.result;

@@ -99,7 +99,7 @@ for words in '--axle front' '--travel 0.1' '--report x.html' '--loads'; do
     run $words "$models/hmmwv.veh" "$models/scenes/paper_run.scene"
     check "$words without --kc" exits 2
 done
-for words in '--travel 0' '--travel x' '--report x.pdf' '--modes' '--loads --report x.html'; do
+for words in '--travel 0' '--travel x' '--report x.pdf' '--modes' '-o x.html'; do
     # shellcheck disable=SC2086
     run --kc $words "$models/hmmwv.veh"
     check "--kc $words" exits 2
@@ -178,6 +178,21 @@ check 'roll rate of the other' same "$(compared "$work/two.csv" front.roll_rate 
 run --kc --axle front --compare "$work/soft.scene" "$models/formula_student.veh"
 check 'its name' prints 'formula_student and formula_student with soft.scene'
 check 'the roll rate alone differs' [ "$(grep '\*$' "$work/out" | grep -vc 'Roll rate')" -eq 0 ]
+# compliance as a page: a line a load and wheel, a bar a vehicle in each cell, numbers as in the table; axles without one are told
+run --kc --loads --axle rear "$models/hatchback.veh" --report "$work/loads.html"
+check 'the page of compliance' exits 0
+check 'has a line a load and wheel' sh -c "grep -c '<tr><td>' '$work/loads.html' | grep -qx 28"
+run --kc --loads --axle rear --compare "$models/hmmwv.veh" "$models/hatchback.veh" --report "$work/loads.html"
+check 'that of two' exits 0
+check 'has a bar a vehicle' sh -c "grep -o '<rect' '$work/loads.html' | wc -l | grep -qx 280"
+run --kc --loads --axle rear --compare "$models/hmmwv.veh" "$models/hatchback.veh"
+check 'and their numbers' sh -c "awk '/  lateral: toe, / { print \$(NF - 2 + (\$NF != \"*\")); exit }' '$work/out' | grep -qxF \"\$(sed -n 's/^<tr[^>]*><td>lateral<.td><td>[^<]*<.td><td class=.n.>\\([^<]*\\)<br>.*/\\1/p' '$work/loads.html' | head -1)\""
+# one axle is the foremost and the rearmost one, and stands beside that of a vehicle
+sed '/^  r_/d; /rear/d' "$root/tests/data/manoeuvre/bar.veh" >"$work/single.veh"
+run --kc --axle front --compare "$work/single.veh" "$root/tests/data/manoeuvre/bar.veh"
+check 'one axle beside one of two' exits 0
+check 'is the same there' sh -c "grep -q '^  Camber, f_wheel_l .* 0.0000 *0.0000$' '$work/out' && ! grep -q 'Only' '$work/out'"
+
 run --kc --loads --axle rear --compare "$models/hmmwv.veh" "$models/hatchback.veh" -o "$work/two.csv"
 run --kc --loads --axle rear "$models/hatchback.veh" -o "$work/a.csv"
 check 'compliance of two' same "$(compared "$work/two.csv" rear_l.lateral.opposed.contact_x 2)" \

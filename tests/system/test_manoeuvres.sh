@@ -143,6 +143,42 @@ check 'the same again' cmp "$work/a.csv" "$work/b.csv"
 run --manoeuvre braking "$linear" --compare "$linear" speed=20 brake=0.25
 check 'a vehicle beside itself' sh -c "test -s '$work/out' && ! grep -q '\*$' '$work/out'"
 
+# two on one page: curves of both in each diagram, the other's dashed, scenes of both, notes of both with the other's name
+sed '/^inputs:/,/^forces:/s/range: \[-0.5/range: [-0.4/; s/^model: .*/model: other/; s/spin_inertia: 1, brake/spin_inertia: 2, brake/' "$linear" >"$work/other.veh"
+run --manoeuvre sine "$linear" --compare "$work/other.veh" speed=16 ay=2 --report "$work/both.html" -o "$work/both.csv"
+check 'the page of two' exits 0
+check 'names both' sh -c "grep -q 'and other (dashed)' '$work/both.html' && grep -q '^<p>other: ' '$work/both.html'"
+both_drawn() { awk '/<figure>/ { n = d = 0; of = /yaw_rate/ } /<polyline/ { ++n; d += /dasharray/ } /<.figure>/ && of { ok += n == 4 && d == 2 } END { exit ok != 1 }' \
+    "$work/both.html"; }
+check 'has two curves of each in a diagram, of the other one dashed' both_drawn
+check 'and scenes of both' sh -c "grep -q '<summary>other: left' '$work/both.html' && grep -q '<summary>linear: left' '$work/both.html'"
+run --manoeuvre frequency "$linear" --compare "$work/other.veh" speed=16 duration=20 --report "$work/both.html" -q -o "$work/both.csv"
+check 'gains of both, by run and linear model, in one diagram' sh -c "sed -n '/<figcaption>.*[Gg]ain/,/<.figure>/p;' '$work/both.html' | sed '/<.figure>/q' | grep -c '<polyline' | grep -qx 4"
+run --manoeuvre step-steer speed=16 "$linear"
+check 'keys before the model' exits 2
+check 'are told' says "the model comes before key=value, not after 'speed=16'"
+run --manoeuvre braking "$linear" speed=20 -o "$work/x.html"
+check 'numbers as a page' exits 2
+check 'no such file' [ ! -e "$work/x.html" ]
+
+# oversteer: above the critical speed sqrt(L / -K), K = (1 / 12.5 - 1 / 10) / g (and 3 % below it, not), nothing answers steadily
+sed 's/tire: front/tire: swapped/; s/tire: rear/tire: front/; s/tire: swapped/tire: rear/' "$linear" >"$work/over.veh"
+critical=$(awk 'BEGIN { print sqrt(2.6 * 9.81 / (1 / 10 - 1 / 12.5)) }')
+for name in steady-speed step-steer; do
+    run --manoeuvre "$name" "$work/over.veh" "speed=$(awk -v c="$critical" 'BEGIN { print 1.03 * c }')"
+    check "$name above the critical speed" exits 1
+    check 'is told' says 'no steady response to steering at .*: the vehicle is not stable straight ahead'
+done
+run --manoeuvre step-steer "$work/over.veh" ay=0.2 "speed=$(awk -v c="$critical" 'BEGIN { print 0.9 * c }')" -q -o "$work/x.csv"
+check 'below it' exits 0
+
+# arms without stops that are steered behind reach their end before a side lifts: no speed at which it lifts, and why
+sed 's/bodies: \[rack, f_hub_l\]/bodies: [chassis, f_hub_l]/; s/\(r_tie_l: .*\)bodies: \[chassis,/\1bodies: [rack,/; s/com: \[1.15,0,0.2\]/com: [-1.35,0,0.2]/' \
+    "$root/tests/data/manoeuvre/bar.veh" >"$work/behind.veh"
+run --manoeuvre j-turn "$work/behind.veh" -o "$work/j.csv"
+check 'a run that breaks off' says 'left .*: the run ends at .* singular .*; so it is not known at which speed it lifts a side'
+check 'is no lifted side' sh -c "! grep -q lifts '$work/j.csv'"
+
 # the pedal begins to move at the speed that was asked for, though a vehicle without drive has coasted up to there
 run --manoeuvre braking "$models/hmmwv_vehicle.veh" speed=16 -q -o "$work/a.csv"
 asked() { awk -F, '$1 == "initial_speed" {n += ($2 / 16 - 1) ^ 2 < 1e-9} END {exit n != 1}' "$work/a.csv"; }

@@ -27,6 +27,17 @@ run --sheet "$root/tests/data/sheet/behind.veh" -o "$work/behind.csv"
 turns() { awk -F, '{ n[$1] = $2 } END { v = 20; k = 1 / (n["at_20.yaw_gain"] * v) - 2.5 / v ^ 2
     d = n["at_20.understeer"] - k; exit !(n["at_20.yaw_gain"] > 0 && k > 1e-4 && k < 3e-4 && d * d < 1e-24) }' "$work/behind.csv"; }
 check 'a car that steers behind understeers' turns
+# the base's own frame is any frame: of a vehicle with equal moments of inertia about all axes, turned by quarter turns, small motions
+# at 20 m/s along x of the drawing are the same
+sed 's/inertia: \[300,1000,1200\]/inertia: [1100, 1100, 1100]/' "$root/tests/data/manoeuvre/bar.veh" >"$work/drawn.veh"
+run --sheet "$work/drawn.veh" -q -o "$work/drawn.csv"
+for turn in '[0, 0, 1], angle: 1.5707963267948966' '[0, 0, 1], angle: 3.141592653589793' '[0, 1, 0], angle: 1.5707963267948966' '[1, 0, 0], angle: -1.5707963267948966'; do
+    sed "s/chassis: {mass/chassis: {orientation: {axis: $turn}, mass/" "$work/drawn.veh" >"$work/turned.veh"
+    run --sheet "$work/turned.veh" -q -o "$work/turned.csv"
+    check "base turned about $turn" sh -c "awk -F, '/^mode_/ && NR == FNR { v[\$1] = \$2; next } /^mode_/ { ++n; d = \$2 / v[\$1] - 1; bad += !(d * d < 1e-10) }
+        END { exit !(n > 15 && !bad) }' '$work/drawn.csv' '$work/turned.csv'"
+done
+
 check 'steered in front, behind, by both axles' /usr/bin/python3 -B "$root/tests/vehicle/steered_axles.py" "$gicrun" \
     "$root/tests/data/manoeuvre/linear.veh" "$work"
 

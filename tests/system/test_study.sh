@@ -49,6 +49,20 @@ run --kc "$models/formula_student.veh" --vary bar_front=-50:50:2 -q
 check 'one run with results' prints 'Camber, front_tire_l .* failed  *[0-9-]'
 check 'quiet: the error alone' sh -c "! grep -q note: '$work/err'"
 
+# a bar acts on the roll of the vehicle and on no heave: by its shape roll is motion 1 in all runs, though heave is slower with a
+# stiff bar; all runs have the motions of their own sheets
+bar=$root/tests/data/manoeuvre/bar.veh
+run --sheet "$bar" --vary bar=0:20000:3 -q -o "$work/bars.csv"
+followed() { awk -F, 'NR == 1 { for (i = 1; i <= NF; ++i) { sub(/ .*/, "", $i); at[$i] = i } next } { n = NR - 1; roll[n] = $at["mode_1.frequency"]; heave[n] = $at["mode_2.frequency"] }
+    END { d = heave[3] / heave[1] - 1; exit !(roll[1] + 0.01 < roll[2] && roll[2] + 0.01 < roll[3] && roll[1] < heave[1] && heave[3] < roll[3] && d * d < 1e-12) }' "$work/bars.csv"; }
+check 'roll and heave keep their numbers' followed
+sed 's/value: 10000/value: 20000/' "$bar" >"$work/stiff.veh"
+run --sheet "$work/stiff.veh" -q -o "$work/stiff.csv"
+same_motions() { awk -F, 'FNR == 1 && NR > 1 { for (i = 1; i <= NF; ++i) if ($i ~ /^mode_.*frequency/) of[i]; next } NR == FNR { if ($1 ~ /^mode_.*frequency/) own[++n] = $2; next } FNR == 4 {
+    for (i in of) if ($i != "") { ++m; best = 1; for (k in own) { d = ($i / own[k] - 1) ^ 2; best = d < best ? d : best } bad += best > 1e-12 } }
+    END { exit !(n > 5 && m == n && !bad) }' "$work/stiff.csv" "$work/bars.csv"; }
+check 'the stiffest run has the motions of its sheet' same_motions
+
 # compliance, joints, two vehicles, as tables and pages
 run --kc --loads --axle front "$models/formula_student.veh" --vary f_upper_out_l.z=0.27:0.29:3 --report "$work/page.html"
 check 'the page of compliance' grep -q '<figcaption>vertical: toe, front_tire_l, deg/kN' "$work/page.html"

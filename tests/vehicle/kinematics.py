@@ -351,13 +351,17 @@ def quantities(v, pose, motion):
         out["mean_steer"] = (l.steer(pose) + r.steer(pose)) / 2
         out["steering_ratio"] = 2 / (dl + dr)
         if abs(out["mean_steer"]) > 2e-3 and len(v.all) > n:
-            inner, outer = (l, r) if out["mean_steer"] > 0 else (r, l)
             xr = np.mean([w.P(v.m.pose0)[0] for w in v.all if w not in v.wheels])
+            # steered to the left ahead of that line it turns to the left, behind it to the right
+            left_turn = out["mean_steer"] * (l.P(pose)[0] - xr) > 0
+            inner, outer = (l, r) if left_turn else (r, l)
             po, pi = outer.P(pose), inner.P(pose)
             # the centre: on the outer wheel's axis and on the other axle's line
             t = (xr - po[0]) / -math.sin(outer.steer(pose))
             middle = po[:2] + t * np.array([-math.sin(outer.steer(pose)), math.cos(outer.steer(pose))])
-            ideal = abs(math.atan2(pi[0] - middle[0], abs(middle[1] - pi[1])))
+            # the angle from straight ahead (astern) to the perpendicular of the line from the inner contact to the centre
+            to = middle - pi[:2]
+            ideal = math.acos((to[1] if left_turn else -to[1]) / np.hypot(*to))
             di, do = abs(inner.steer(pose)), abs(outer.steer(pose))
             out["turning_radius"] = np.hypot(*(middle - po[:2]))
             out["ackermann_error"] = di - ideal

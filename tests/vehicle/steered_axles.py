@@ -3,6 +3,7 @@
 its understeer gradient is one and the same, (1 / 10 - 1 / 12.5) / g, and the yaw rate by the steer angle V / (L + K V^2), where the
 angle is that of the front axle less that of the rear one. Steering that makes no curve is told by what it does."""
 import csv
+import math
 import pathlib
 import subprocess
 import sys
@@ -77,3 +78,43 @@ for name, text, what in (
     out = subprocess.run([gicrun, "--manoeuvre", "step-steer", str(work / f"{name}.veh"), "ay=2"], capture_output=True, text=True)
     assert out.returncode == 1 and what.split("cornering: ")[1] in out.stderr, out.stderr
     print(f"{name}: told")
+
+# ---- the curve of wheels that steer behind, in front, and by more than a quarter turn's worth of the inner one ------------------
+
+
+def curve(r, axle, fixed):
+    """Radius and error of the inner wheel from contacts and steer angles alone: the centre is where the outer wheel's axis meets the
+    line x = fixed, and lies to the left where the wheels ahead of that line are turned to the left."""
+    wheel = [[float(r[f"{w}.{c}"]) for c in ("steer [rad]", "contact_x [m]", "contact_y [m]")] for w in axle]
+
+    def centre(w):
+        return w[2] + (w[1] - fixed) / math.tan(w[0])  # its axis is along (-sin, cos)
+    left_turn = centre(wheel[0]) > wheel[0][2]
+    outer, inner = (wheel[1], wheel[0]) if left_turn else (wheel[0], wheel[1])
+    to = [fixed - inner[1], centre(outer) - inner[2]]
+    # the inner wheel's axis points to the centre when the wheel has turned by the angle between its axis straight ahead and `to`
+    ideal = math.acos((to[1] if left_turn else -to[1]) / math.hypot(*to))
+    return math.hypot(outer[1] - fixed, outer[2] - centre(outer)), abs(inner[0]) - ideal
+
+
+def curves(text, axle, wheels, fixed, name):
+    path = work / f"{name}.veh"
+    path.write_text(text)
+    subprocess.run([gicrun, "--kc", "-q", "--axle", axle, str(path), "-o", str(work / "kc.csv")], check=True)
+    seen = 0
+    with open(work / "kc.csv") as f:
+        for r in csv.DictReader(f):
+            if r["motion"] != "steer" or not r["turning_radius [m]"]:
+                continue
+            radius, error = curve(r, wheels, fixed)
+            assert abs(float(r["turning_radius [m]"]) - radius) < 1e-9 * radius, (name, r["turning_radius [m]"], radius)
+            assert abs(float(r["ackermann_error [rad]"]) - error) < 1e-9, (name, r["ackermann_error [rad]"], error)
+            seen += 1
+    assert seen > 10, seen
+    print(f"{name}: {seen} curves")
+
+
+x_of = {"front": 1.2, "rear": -1.4}
+curves(linear, "front", ("f_l", "f_r"), x_of["rear"], "curve in front")
+curves(only_behind(), "rear", ("r_l", "r_r"), x_of["front"], "curve behind")
+curves(once(linear, ("range: [-0.5, 0.5]", "range: [-1.2, 1.2]")), "front", ("f_l", "f_r"), x_of["rear"], "curve of 1.2 rad")
