@@ -439,5 +439,5 @@ int main(int count, char **word)
     }
     gicl_messages_free(said);
     gicl_close(library);
-    return status; /* GICL_FAILED and GICL_WRONG are exit statuses */
+    return terminal_close("gicrun", status); /* GICL_FAILED and GICL_WRONG are exit statuses */
 }

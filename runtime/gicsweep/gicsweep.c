@@ -308,5 +308,5 @@ int main(int count, char **word)
         status = gicl_sweep_run(library, model, &asked.sweep, NULL, said);
     gicl_messages_free(said);
     gicl_close(library);
-    return status; /* GICL_FAILED and GICL_WRONG are exit statuses */
+    return terminal_close("gicsweep", status); /* GICL_FAILED and GICL_WRONG are exit statuses */
 }

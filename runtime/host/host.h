@@ -24,6 +24,8 @@ int64_t usage_whole(const char *program, const char *message, const char *word, 
 struct gicl_message;
 /* The function of a program's listener: tables go to standard output, how far the work is to a terminal, all others to
  * standard error. */
+/* The exit status at the end: `status`, or where what was printed could not be written, GICL_FAILED after a message. */
+int terminal_close(const char *program, int status);
 void terminal_hear(void *context, const struct gicl_message *message);
 
 /* ---- options.c */

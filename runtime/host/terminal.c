@@ -3,8 +3,21 @@
 #include "host/gic.h"
 #include "host/host.h"
 
+#include <errno.h>
+#include <stdbool.h>
 #include <stdio.h>
+#include <string.h>
 #include <unistd.h>
+
+int terminal_close(const char *program, int status)
+{
+    const bool failed = fflush(stdout) != 0 || ferror(stdout);
+    if (failed && !status)
+        fprintf(stderr,
+                "%s: error: standard output can't be written: %s\n  remedy: is the disk full? `-o FILE` names a file\n",
+                program, strerror(errno));
+    return failed && !status ? GICL_FAILED : status;
+}
 
 void terminal_hear(void *context, const gicl_message *message)
 {

@@ -402,6 +402,27 @@ static int start(const Equilibrium *found, const Scene *scene)
     return status == GIC_OK ? scene_set_fast(code, scene, self) : status;
 }
 
+/* A vehicle that is drawn with wheels deep in the road, as with z = 0 at their centres, begins above it instead: tires
+ * that are pressed flat throw it off, and out of the reach of the search. Returns a status. */
+static int lift_out(const Equilibrium *found)
+{
+    static const double deep = 0.1; /* of a wheel's radius */
+    const gic_model *code = found->engine->code;
+    gic_head *self = &found->self->head;
+    const double *output = instance_array(self, code->output_offset);
+    double most = 0;
+    bool lifts = false;
+    const int status = found->model->free_base && found->model->wheels ? code->outputs(self) : GIC_OK;
+    for (int i = 0; i < found->model->wheels && found->model->free_base && status == GIC_OK; ++i) {
+        const double deflection = output[equilibrium_wheel(found, i) + 1];
+        most = fmax(most, deflection);
+        lifts = lifts || deflection > deep * found->model->wheel[i].radius;
+    }
+    if (lifts)
+        instance_array(self, code->state_offset)[2] += most;
+    return status;
+}
+
 static bool is_carried(const Equilibrium *found)
 {
     const gic_model *code = found->engine->code;
@@ -497,6 +518,8 @@ static const Equilibrium *find(Pool *pool, const Model *model, const Scene *scen
                   model->name);
     int32_t gears[POWERTRAIN_DISCRETE] = {0};
     int status = start(found, scene);
+    if (status == GIC_OK)
+        status = lift_out(found);
     if (status == GIC_OK && locked)
         exchange_gears(found, gears);
     if (status == GIC_OK)

@@ -194,8 +194,8 @@ static void of_sides(const KcAxle *axle, const KcLook *look, const double *along
         out[KC_CENTRE_SIDE] = (l[1] + r[1]) / 2;
         out[KC_CENTRE_HEIGHT] = l[2] - slope[0] * (out[KC_CENTRE_SIDE] - l[1]) - ground;
     } else {
-        out[KC_CENTRE_SIDE] = copysign(INFINITY, apart);
-        out[KC_CENTRE_HEIGHT] = copysign(fabs(slope[0]) > rounding ? INFINITY : 0, -slope[0] * apart);
+        out[KC_CENTRE_SIDE] = INFINITY;
+        out[KC_CENTRE_HEIGHT] = fabs(slope[0]) > rounding ? INFINITY : 0;
     }
 }
 

@@ -134,6 +134,8 @@ _Noreturn void car_refuse(const TestCar *car, const char *remedy, const char *wh
 /* End with a message where the vehicle is not steered; where it has no accelerator, or no brake. */
 void car_need_steering(const TestCar *car);
 void car_need_drive(const TestCar *car);
+/* The same where the base's origin, by which drivers steer, is not between the wheels. */
+void car_need_origin(const TestCar *car);
 void car_need_brake(const TestCar *car);
 /* The text of a scene that begins straight ahead at a speed, m/s. drives: the driver keeps the speed, where the car has
  * pedals; false: pedals are free. more: other keys, NULL: none. */

@@ -259,6 +259,7 @@ static void find_preview(Loop *loop, PathDriver *driver)
 bool manoeuvre_find_driver(Manoeuvre *m, double speed, double adapt, PathDriver *driver, const char **why)
 {
     const TestCar *car = m->car;
+    car_need_origin(car);
     const double by_ay = car_angle_by_acceleration(car, speed);
     *driver = (PathDriver){.speed = speed, .gain = 1};
     if (by_ay > 0)

@@ -217,10 +217,9 @@ void manoeuvre_steady_radius(Manoeuvre *m)
     const PathDriver driver = manoeuvre_driver(m, sqrt(m->value[2] * radius), learns);
     for (int side = 1; side >= -1; side -= 2) {
         Limit limit = {.sign = side, .radius = radius};
-        const char *more =
-            manoeuvre_driver_text(m, &driver, car_pedals(car, target),
-                                  pool_print(m->pool, "{circle: {center: [%.17g, %.17g], radius: %.17g}}", car->com[0],
-                                             side * radius, side * radius));
+        const char *more = manoeuvre_driver_text(
+            m, &driver, car_pedals(car, target),
+            pool_print(m->pool, "{circle: {center: [0, %.17g], radius: %.17g}}", side * radius, side * radius));
         const Trial *trial = trial_run(car, side > 0 ? "left" : "right", car_scene(car, duration, start, false, more),
                                        is_at_limit, &limit);
         const double end = trial->row[trial->rows - 1][TRIAL_TIME],

@@ -178,6 +178,11 @@ check 'roll rate of the other' same "$(compared "$work/two.csv" front.roll_rate 
 run --kc --axle front --compare "$work/soft.scene" "$models/formula_student.veh"
 check 'its name' prints 'formula_student and formula_student with soft.scene'
 check 'the roll rate alone differs' [ "$(grep '\*$' "$work/out" | grep -vc 'Roll rate')" -eq 0 ]
+# what can not be printed is told
+"$gicrun" --kc --axle front "$models/formula_student.veh" >/dev/full 2>"$work/err"
+check 'a full standard output' [ $? -eq 1 ]
+check 'is told' says "standard output can't be written"
+
 # compliance as a page: a line a load and wheel, a bar a vehicle in each cell, numbers as in the table; axles without one are told
 run --kc --loads --axle rear "$models/hatchback.veh" --report "$work/loads.html"
 check 'the page of compliance' exits 0

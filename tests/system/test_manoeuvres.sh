@@ -143,6 +143,17 @@ check 'the same again' cmp "$work/a.csv" "$work/b.csv"
 run --manoeuvre braking "$linear" --compare "$linear" speed=20 brake=0.25
 check 'a vehicle beside itself' sh -c "test -s '$work/out' && ! grep -q '\*$' '$work/out'"
 
+# wherever a vehicle is drawn, it drives the same: 200 m further ahead, 5 m aside
+printf '%s\n' 'gicgen: 1' 'model: shifted' 'base: chassis' "include: [{file: $linear, at: [200, 5, 0]}]" >"$work/shifted.veh"
+for words in 'steady-radius radius=40' 'single-lane-change speed=15 ay=1' 'ride speed=10 duration=10'; do
+    # shellcheck disable=SC2086
+    run --manoeuvre $words "$linear" -q -o "$work/drawn.csv"
+    # shellcheck disable=SC2086
+    run --manoeuvre $words "$work/shifted.veh" -q -o "$work/shifted.csv"
+    check "$words elsewhere" sh -c "awk -F, 'NR == FNR { v[\$1] = \$2; next } FNR > 1 { ++n; d = \$2 - v[\$1]; bad += !(d * d <= 1e-12 * (1e-6 + v[\$1] * v[\$1])) }
+        END { exit !(n > 5 && !bad) }' '$work/drawn.csv' '$work/shifted.csv'"
+done
+
 # two on one page: curves of both in each diagram, the other's dashed, scenes of both, notes of both with the other's name
 sed '/^inputs:/,/^forces:/s/range: \[-0.5/range: [-0.4/; s/^model: .*/model: other/; s/spin_inertia: 1, brake/spin_inertia: 2, brake/' "$linear" >"$work/other.veh"
 run --manoeuvre sine "$linear" --compare "$work/other.veh" speed=16 ay=2 --report "$work/both.html" -o "$work/both.csv"

@@ -27,6 +27,14 @@ run --sheet "$root/tests/data/sheet/behind.veh" -o "$work/behind.csv"
 turns() { awk -F, '{ n[$1] = $2 } END { v = 20; k = 1 / (n["at_20.yaw_gain"] * v) - 2.5 / v ^ 2
     d = n["at_20.understeer"] - k; exit !(n["at_20.yaw_gain"] > 0 && k > 1e-4 && k < 3e-4 && d * d < 1e-24) }' "$work/behind.csv"; }
 check 'a car that steers behind understeers' turns
+# a vehicle drawn with z = 0 at its wheels' centres, 0.3 m deep in the road, rests like one drawn upon it
+printf '%s\n' 'gicgen: 1' 'model: deep' 'base: chassis' "include: [{file: $root/tests/data/manoeuvre/bar.veh, at: [0, 0, -0.3]}]" >"$work/deep.veh"
+run --sheet "$work/deep.veh" -q -o "$work/deep.csv"
+check 'a vehicle drawn deep in the road' exits 0
+run --sheet "$root/tests/data/manoeuvre/bar.veh" -q -o "$work/upon.csv"
+check 'rests as upon it' sh -c "awk -F, '/^mode_|load|camber/ && NR == FNR { v[\$1] = \$2; next } \$1 in v { ++n; d = \$2 - v[\$1]; bad += !(d * d <= 1e-12 * (1e-3 + v[\$1] * v[\$1])) }
+    END { exit !(n > 30 && !bad) }' '$work/upon.csv' '$work/deep.csv'"
+
 # the base's own frame is any frame: of a vehicle with equal moments of inertia about all axes, turned by quarter turns, small motions
 # at 20 m/s along x of the drawing are the same
 sed 's/inertia: \[300,1000,1200\]/inertia: [1100, 1100, 1100]/' "$root/tests/data/manoeuvre/bar.veh" >"$work/drawn.veh"
