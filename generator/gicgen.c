@@ -47,6 +47,8 @@ static const char usage[] =
     "                   derivatives\n"
     "  --implicit       code that takes implicit steps too, for stiff models (models/STIFF.md); units of FMI\n"
     "                   likewise\n"
+    "  --tire-tables    Magic Formulas by table, within 1e-6 of a wheel's load: quicker (models/TIRES.md); for the\n"
+    "                   code of one vehicle without --lanes\n"
     "  --solve FORM     of the equations of motion: auto (default: fewer operations), reduced, articulated for long\n"
     "                   chains, or augmented, with all multipliers\n"
     "  --recovery WAY   of dependent coordinates: auto (default), newton, or closed wherever there is a closed form\n"
@@ -76,7 +78,7 @@ typedef struct Options {
     int fmi;                                               /* version of an FMU */
     const char *model, *scene, *output, *page, *templates; /* page: of --graph or --report; scene: NULL: none */
     bool formed, recovered;                                /* are `solve` and `recovery` given? */
-    bool derivatives, implicit;
+    bool derivatives, implicit, tire_tables;
 } Options;
 
 static _Noreturn void usage_error(const char *message, const char *word)
@@ -158,6 +160,7 @@ static Options read_options(int count, char **word)
         {"scene", .text = &options.scene},
         {"derivatives", .on = &options.derivatives},
         {"implicit", .on = &options.implicit},
+        {"tire-tables", .on = &options.tire_tables},
         {"templates", .text = &options.templates},
         {"main", .on = &main_program},
         {"sequence", .on = &sequence},
@@ -208,6 +211,8 @@ static Options read_options(int count, char **word)
         usage_error("--implicit is for an FMU and the code of one vehicle in any scene, without --batch, --lanes and "
                     "--scene",
                     NULL);
+    if (options.tire_tables && (options.task != TASK_GENERATE || options.batch.lanes))
+        usage_error("--tire-tables is for the code of one vehicle, without --batch, --fmu and --lanes", NULL);
     if (options.task == TASK_BATCH && !options.batch.lanes)
         options.batch.lanes = 4;
     return options;
@@ -252,6 +257,8 @@ static void write_code(Pool *pool, const Model *model, const Sequence *sequence,
     formulation_validate(pool, formulation, setting->validation);
     effort_step(told, "they agree; the C is written next");
     name = strcmp(path, "-") ? name : NULL;
+    if (options->tire_tables)
+        formulation = formulation_tire_tables(pool, formulation);
     if (batch && batch_missing(formulation))
         diag_fail((Place){model->source, 0, 0}, "simulate such a model vehicle by vehicle, in threads of your own",
                   "code for many vehicles at once can't have %s yet", batch_missing(formulation));

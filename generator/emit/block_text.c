@@ -332,6 +332,12 @@ static void write_text(Emitter *m, Text *line, Ex e, int strength)
         write_friction_change(m, line, node);
         return;
     }
+    if (node->op == OP_CURVE) {
+        text_print(line, "%scurve_%d(", own_prefix(m), (int)node->arg[1]);
+        write_text(m, line, node->arg[0], 0);
+        text_print(line, ")");
+        return;
+    }
     if (node->op == OP_TABLE || node->op == OP_TABLE_SLOPE) {
         if (is_vector(m, e))
             text_print(line, "%s_TABLE(", function_name(width_of(m, e)));

@@ -122,6 +122,10 @@ void write_pieces(void *context, Text *out, int indent);
 void write_design(void *context, Text *out, int indent);
 void write_initial(void *context, Text *out, int indent);
 
+/* curves.c: insertion point of curves.c.in, context: the Generation; lines about tires by table for the banner. */
+extern const Insertions curve_points;
+void write_curve_error(const Generation *g, Text *out);
+
 /* lanes.c: insertion points of templates of lanes. */
 extern const Insertions lane_class_points, lane_width_points, lane_fold_points;
 /* For a plan in lanes: vector types; links of subsets side by side; the function of class g->class; its call, at the

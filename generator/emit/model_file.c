@@ -102,6 +102,7 @@ static void write_banner(void *context, Text *out, int indent)
     }
     text_print(out, " *\n");
     write_narrowing(g, out);
+    write_curve_error(g, out);
     write_counts(g, out);
     text_print(out, " */\n");
 }
@@ -733,7 +734,8 @@ static void check_templates(Pool *pool, const char *templates)
                                         &tangent_class_points,  &tangent_header_points,
                                         &columns_points,        &columns_class_points,
                                         &columns_wheels_points, &columns_wheel_points,
-                                        &implicit_points,       NULL};
+                                        &implicit_points,       &curve_points,
+                                        NULL};
     templates_check(pool, templates, points);
 }
 

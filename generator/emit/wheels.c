@@ -90,7 +90,8 @@ static void write_contact(void *context, Text *out, int indent)
 static void write_tire(void *context, Text *out, int indent)
 {
     Expansion *x = context;
-    write_fast_block(x->g, out, &x->class->tire, SCOPE_WHEEL, &x->constants, indent);
+    const Block *tire = x->class->by_table.stores ? &x->class->by_table : &x->class->tire;
+    write_fast_block(x->g, out, tire, SCOPE_WHEEL, &x->constants, indent);
 }
 
 static void write_balance(void *context, Text *out, int indent)
@@ -115,6 +116,8 @@ static void write_wheel_classes(void *context, Text *out, int indent)
     (void)indent;
     const Wheels *wheels = g->formulation->wheels;
     write_wheel_vectors(g, out);
+    if (wheels->curves)
+        template_expand(g->pool, out, g->templates, "curves.c.in", g->model->name, NULL, &curve_points, g);
     for (int c = 0; c < wheels->classes; ++c) {
         const WheelClass *class = &wheels->class[c];
         if (wheel_lanes(g, class) > 1) {

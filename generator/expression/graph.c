@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * The expression graph: hash-consed nodes, folding and simplification on construction, sample values. */
 #include "base/table.h"
+#include "expression/curve.h"
 #include "expression/expression.h"
 
 #include <math.h>
@@ -278,8 +279,9 @@ static void node_evaluate(const Dag *dag, const Node *node, double *out, int fir
     const double *a = dag->value + node->arg[0] * samples, *b = dag->value + node->arg[last > 0 ? 1 : 0] * samples,
                  *c = dag->value + node->arg[last > 1 ? 2 : 0] * samples;
     for (int s = first; s < first + count; ++s)
-        out[s] = node->op == OP_TABLE ? table_value(&dag->tables[node->arg[1]], a[s])
-                                      : op_value((Op)node->op, a[s], b[s], c[s]);
+        out[s] = node->op == OP_TABLE   ? table_value(&dag->tables[node->arg[1]], a[s])
+                 : node->op == OP_CURVE ? curve_value(&dag->curves->curve[node->arg[1]], a[s])
+                                        : op_value((Op)node->op, a[s], b[s], c[s]);
 }
 
 Ex ex_literal(Dag *dag, double value)

@@ -220,12 +220,15 @@ typedef struct WheelClass {
     Block contact; /* contact[]; rate[] of the slips; grip[] */
     Block tire;    /* force[] of a wheel with load; without load force[] is 0 */
     Block balance; /* rate[] of spin and brake; grip[] */
+    Block by_table;     /* `tire` with curves; without stores: it has none */
+    double table_error; /* of it, relative to load and radius, as measured */
 } WheelClass;
 
 typedef struct Wheels {
     int count; /* wheels with tires */
     int classes;
     WheelClass *class;
+    const struct Curves *curves; /* of blocks by table; NULL: there are none */
     int links;    /* numbers of link[] */
     Block link;   /* link[] from a Whole */
     Block torque; /* torque[2 i]: drive and brake of the i-th wheel with a tire; rate[] of the model's own states; from
@@ -353,6 +356,13 @@ double formulation_numbers(Pool *pool, const Model *model, const Sequence *seque
 /* Make the blocks of a formulation from its plan. */
 void formulation_blocks(Pool *pool, Formulation *f);
 
+/* tire_tables.c: the formulation whose slip forces of Magic Formulas are found by tables, with TIRE_TABLE_BOUND as the
+ * largest error of forces relative to the load, and of moments to load times radius; measured at TIRE_TABLE_PLACES, and
+ * a message where half of the bound is exceeded or no tire has such formulas. For scalar code; derivatives are those of
+ * the formulas. */
+#define TIRE_TABLE_BOUND 1e-6
+enum { TIRE_TABLE_PLACES = 40000 };
+const Formulation *formulation_tire_tables(Pool *pool, const Formulation *formulation);
 /* lanes.c: the number of lanes that a word names: 2, 4, 8 or 16; 0: any other word. */
 int lanes_of(const char *word);
 /* The formulation for code that solves members of a class side by side in vectors of up to `most` lanes, a power of 2:

@@ -1,0 +1,124 @@
+/* SPDX-License-Identifier: MIT
+ * Tires by table (models/TIRES.md section 11): the blocks of tires' forces with curves in place of arc tangents and of
+ * sines and cosines of them, and by how much that changes forces and moments. */
+#include "base/message.h"
+#include "expression/curve.h"
+#include "expression/expression.h"
+#include "model/model.h"
+#include "model/tire_numbers.h"
+#include "vehicle/vehicle.h"
+#include "vehicle/wheel.h"
+
+#include <math.h>
+
+/* Inputs of a tire's block that are varied. */
+enum { VARY_LOAD, VARY_KAPPA, VARY_TANGENT, VARY_CAMBER, VARY_FRICTION, VARIED };
+
+typedef struct Probe {
+    Dag *dag;
+    const Tire *tire;
+    Ex input[VARIED];
+    double kept[VARIED]; /* their values at sample 0 before */
+} Probe;
+
+static double limited(double limit, double most)
+{
+    return fmin(fabs(limit), most);
+}
+
+/* Place `number` of a sequence that fills the five dimensions evenly (Roberts' R5), as inputs. Slips gather at 0, loads
+ * go from a thousandth of the nominal one to the largest of the data. */
+static void set_place(const Probe *probe, int number)
+{
+    const double golden = 1.13472413840151949; /* x^6 = x + 1 */
+    const double *pac = probe->tire->number;
+    double u[VARIED], step = 1;
+    for (int i = 0; i < VARIED; ++i) {
+        step /= golden;
+        u[i] = 0.5 + number * step;
+        u[i] -= floor(u[i]);
+    }
+    const double nominal = pac[PAC_LFZO] * pac[PAC_FNOMIN], most = fmin(pac[PAC_FZMAX], 5 * nominal);
+    double side[VARIED];
+    for (int i = 0; i < VARIED; ++i)
+        side[i] = 2 * u[i] - 1;
+    for (int i = VARY_KAPPA; i <= VARY_TANGENT; ++i)
+        if (number % 2)
+            side[i] *= side[i] * fabs(side[i]);
+    const double kappa = side[VARY_KAPPA] > 0 ? pac[PAC_KPUMAX] : pac[PAC_KPUMIN];
+    const double alpha = side[VARY_TANGENT] > 0 ? pac[PAC_ALPMAX] : pac[PAC_ALPMIN];
+    const double camber = side[VARY_CAMBER] > 0 ? pac[PAC_CAMMAX] : pac[PAC_CAMMIN];
+    const double value[VARIED] = {[VARY_LOAD] = nominal / 1000 + u[VARY_LOAD] * (fmax(most, nominal) - nominal / 1000),
+                                  [VARY_KAPPA] = side[VARY_KAPPA] * limited(kappa, 1.5),
+                                  [VARY_TANGENT] = tan(side[VARY_TANGENT] * limited(alpha, 1.55)),
+                                  [VARY_CAMBER] = side[VARY_CAMBER] * limited(camber, 0.5),
+                                  [VARY_FRICTION] = number % 4 < 2 ? 1 : 0.1 + 1.1 * u[VARY_FRICTION]};
+    for (int i = 0; i < VARIED; ++i)
+        ex_set_sample(probe->dag, probe->input[i], 0, value[i]);
+}
+
+/* The largest difference of the forces relative to the load, and of the moments relative to the load by the radius. */
+static double measure(const WheelClass *class, const Tire *tire)
+{
+    static const int place[VARIED] = {CONTACT_LOAD, CONTACT_KAPPA, CONTACT_TANGENT, CONTACT_CAMBER, CONTACT_FRICTION};
+    Dag *dag = class->tire.dag;
+    Probe probe = {.dag = dag, .tire = tire};
+    double none[dag->samples], worst = 0;
+    for (int s = 0; s < dag->samples; ++s)
+        none[s] = 0;
+    for (int i = 0; i < VARIED; ++i) {
+        probe.input[i] = ex_input(dag, element_at(ARRAY_contact, place[i]), none);
+        probe.kept[i] = ex_value(dag, probe.input[i], 0);
+    }
+    for (int number = 0; number < TIRE_TABLE_PLACES; ++number) {
+        set_place(&probe, number);
+        dag_evaluate(dag, 0, 1);
+        const double load = ex_value(dag, probe.input[VARY_LOAD], 0);
+        for (int i = 0; i < class->tire.stores; ++i) {
+            const int force = class->tire.store[i].target.index;
+            const double off = fabs(ex_value(dag, class->tire.store[i].value, 0) -
+                                    ex_value(dag, class->by_table.store[i].value, 0));
+            const double share = off / (force == TIRE_FX || force == TIRE_FY ? load : load * tire->radius);
+            worst = share <= worst ? worst : share; /* what is not finite stays */
+        }
+    }
+    for (int i = 0; i < VARIED; ++i)
+        ex_set_sample(dag, probe.input[i], 0, probe.kept[i]);
+    dag_evaluate(dag, 0, 1);
+    return worst;
+}
+
+const Formulation *formulation_tire_tables(Pool *pool, const Formulation *formulation)
+{
+    const double share = 0.5; /* of the bound, at most: places between those that are measured may be worse */
+    const Model *model = formulation->model;
+    const Wheels *from = formulation->wheels;
+    if (!from || !from->count)
+        diag_fail((Place){model->source, 0, 0}, "leave --tire-tables out", "no wheel of '%s' has a tire", model->name);
+    Formulation *out = pool_alloc(pool, sizeof *out);
+    Wheels *wheels = pool_alloc(pool, sizeof *wheels);
+    Curves *curves = pool_alloc(pool, sizeof *curves);
+    *out = *formulation;
+    *wheels = *from;
+    wheels->class = pool_alloc(pool, (size_t)from->classes * sizeof *wheels->class);
+    for (int c = 0; c < from->classes; ++c) {
+        WheelClass *class = &wheels->class[c];
+        *class = from->class[c];
+        const Tire *tire = &model->tire[model->wheel[class->member[0]].tire];
+        if (tire->type != TIRE_PAC2002 || tire->mode == 0)
+            continue;
+        class->by_table = block_with_curves(&class->tire, curves);
+        class->table_error = measure(class, tire);
+        if (!(class->table_error <= share * TIRE_TABLE_BOUND))
+            diag_fail(tire->at, "leave --tire-tables out",
+                      "tire '%s' by table is off by %.1e of its load, measured at %d places; %.0e is the bound, and half "
+                      "of it the most that may be measured",
+                      tire->name, class->table_error, TIRE_TABLE_PLACES, TIRE_TABLE_BOUND);
+    }
+    if (!curves->count)
+        diag_fail((Place){model->source, 0, 0}, "leave --tire-tables out",
+                  "no tire of '%s' has a Magic Formula for slip forces, and tables are for those alone", model->name);
+    wheels->curves = curves;
+    out->wheels = wheels;
+    return out;
+}
