@@ -96,6 +96,17 @@ void gic_table_height(const gic_road *road, int32_t lane, gic_real time, gic_rea
         out[0] = height[x <= at[low] ? low : high];
         return;
     }
+    /* the piece of x if points are evenly spaced; x may be no number */
+    const gic_real place = (x - at[low]) / (at[high] - at[low]) * (gic_real)high;
+    const int32_t guess = place >= GIC_R(0.0) && place < (gic_real)high ? (int32_t)place : low;
+    if (x < at[guess]) {
+        high = guess;
+    } else if (x < at[guess + 1]) {
+        low = guess;
+        high = guess + 1;
+    } else {
+        low = guess + 1;
+    }
     while (high - low > 1) {
         const int32_t middle = low + (high - low) / 2;
         if (x < at[middle])

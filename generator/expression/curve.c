@@ -3,8 +3,8 @@
  *
  * A cell is a quarter of an octave, the first one goes from 0 to 1/4, so that a cell is found from the bits of the
  * argument. Its polynomial has degree 6: value and slope of the function at both ends, so that values and slopes go on
- * without a step, and its value at three places between. It is found with sums, products, quotients and roots alone: the
- * same digits on every machine. */
+ * without a step, and its value at three places between. It is found with sums, products, quotients and roots alone:
+ * the same digits on every machine. */
 #include "expression/curve.h"
 #include "expression/expression.h"
 
@@ -77,8 +77,8 @@ static void cell_fit(const Curve *curve, double begin, double end, double *cell)
     }
     for (int k = 1; k <= DEGREE; ++k)
         for (int i = DEGREE; i >= k; --i)
-            difference[i] = x[i] == x[i - k] ? slope[i] * half
-                                             : (difference[i] - difference[i - 1]) / (x[i] - x[i - k]);
+            difference[i] =
+                x[i] == x[i - k] ? slope[i] * half : (difference[i] - difference[i - 1]) / (x[i] - x[i - k]);
     /* Newton's form to powers, by Horner's rule */
     double power[DEGREE + 1] = {0};
     for (int i = DEGREE; i >= 0; --i) {
@@ -100,8 +100,9 @@ double curve_value(const Curve *curve, double x)
     double value, slope;
     if (!(a < curve_end(curve))) { /* not a number counts as beyond, too */
         const double arc = curve->kind == CURVE_TAN ? tan(x) : atan(x);
-        return curve->kind == CURVE_SINE ? sin(curve->factor * arc)
-               : curve->kind == CURVE_COSINE ? cos(curve->factor * arc) : arc;
+        return curve->kind == CURVE_SINE     ? sin(curve->factor * arc)
+               : curve->kind == CURVE_COSINE ? cos(curve->factor * arc)
+                                             : arc;
     }
     int64_t bits;
     memcpy(&bits, &a, sizeof bits);
@@ -134,7 +135,8 @@ void curve_make(Pool *pool, Curve *curve)
 /* The curve of that kind, made if it is new; -1: it would be too far off. */
 static int curve_find(Pool *pool, Curves *curves, CurveKind kind, double factor)
 {
-    const double useful = 1e-7; /* of a value, which is 1 at most but for arc tangents; curves of usual tires are 2e-8 off */
+    const double useful =
+        1e-7; /* of a value, which is 1 at most but for arc tangents; curves of usual tires are 2e-8 off */
     for (int i = 0; i < curves->count; ++i)
         if (curves->curve[i].kind == kind && curves->curve[i].factor == factor)
             return i;

@@ -35,8 +35,8 @@ void curve_make(Pool *pool, Curve *curve);
 double curve_end(const Curve *curve);
 /* What generated code computes for x, in double precision. */
 double curve_value(const Curve *curve, double x);
-/* The block with arc tangents, tangents, and sines and cosines of a number times an arc tangent as OP_CURVE, in the same
- * graph; new curves are added. The graph remembers `curves`, and evaluates them. Checks stay as they are. */
+/* The block with arc tangents, tangents, and sines and cosines of a number times an arc tangent as OP_CURVE, in the
+ * same graph; new curves are added. The graph remembers `curves`, and evaluates them. Checks stay as they are. */
 Block block_with_curves(const Block *block, Curves *curves);
 
 #endif

@@ -181,9 +181,10 @@ typedef struct Node {
     uint8_t wide;      /* lanes of a vector; 0: one number */
     uint8_t undefined; /* constants made a part of it that is no finite number: it is not folded, nor into anything, so
                           that it is computed at run time and ends in a status */
-    Ex arg[3];         /* OP_ROAD_PART: arg[1] is 0, 1 or 2 for h, dh/dx, dh/dy; OP_TABLE, OP_TABLE_SLOPE, OP_CURVE: arg[1] is
-                          the index of the table or curve; OP_LANE: arg[1] is the lane; OP_FOLD: arg[2] is the step; OP_ROAD_CHANGE,
-                          OP_FRICTION_CHANGE: arg[0] is the OP_ROAD or OP_FRICTION, then the changes of x and y */
+    Ex arg[3]; /* OP_ROAD_PART: arg[1] is 0, 1 or 2 for h, dh/dx, dh/dy; OP_TABLE, OP_TABLE_SLOPE, OP_CURVE: arg[1] is
+                  the index of the table or curve; OP_LANE: arg[1] is the lane; OP_FOLD: arg[2] is the step;
+                  OP_ROAD_CHANGE, OP_FRICTION_CHANGE: arg[0] is the OP_ROAD or OP_FRICTION, then the changes of x and y
+                */
     const Element *element; /* OP_INPUT: what it reads; of a vector that of each lane */
 } Node;
 
@@ -225,7 +226,7 @@ typedef struct Dag {
     struct DagLabel *label;
     DagOrigin *origin;
     DagSystem *system;
-    const Table *tables; /* what OP_TABLE looks up in, as far as samples go; NULL: they are 0 */
+    const Table *tables;         /* what OP_TABLE looks up in, as far as samples go; NULL: they are 0 */
     const struct Curves *curves; /* of OP_CURVE: curve.h */
     uint32_t mask;
 } Dag;

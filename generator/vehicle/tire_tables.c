@@ -76,8 +76,8 @@ static double measure(const WheelClass *class, const Tire *tire)
         const double load = ex_value(dag, probe.input[VARY_LOAD], 0);
         for (int i = 0; i < class->tire.stores; ++i) {
             const int force = class->tire.store[i].target.index;
-            const double off = fabs(ex_value(dag, class->tire.store[i].value, 0) -
-                                    ex_value(dag, class->by_table.store[i].value, 0));
+            const double off =
+                fabs(ex_value(dag, class->tire.store[i].value, 0) - ex_value(dag, class->by_table.store[i].value, 0));
             const double share = off / (force == TIRE_FX || force == TIRE_FY ? load : load * tire->radius);
             worst = share <= worst ? worst : share; /* what is not finite stays */
         }
@@ -110,10 +110,11 @@ const Formulation *formulation_tire_tables(Pool *pool, const Formulation *formul
         class->by_table = block_with_curves(&class->tire, curves);
         class->table_error = measure(class, tire);
         if (!(class->table_error <= share * TIRE_TABLE_BOUND))
-            diag_fail(tire->at, "leave --tire-tables out",
-                      "tire '%s' by table is off by %.1e of its load, measured at %d places; %.0e is the bound, and half "
-                      "of it the most that may be measured",
-                      tire->name, class->table_error, TIRE_TABLE_PLACES, TIRE_TABLE_BOUND);
+            diag_fail(
+                tire->at, "leave --tire-tables out",
+                "tire '%s' by table is off by %.1e of its load, measured at %d places; %.0e is the bound, and half "
+                "of it the most that may be measured",
+                tire->name, class->table_error, TIRE_TABLE_PLACES, TIRE_TABLE_BOUND);
     }
     if (!curves->count)
         diag_fail((Place){model->source, 0, 0}, "leave --tire-tables out",

@@ -217,9 +217,9 @@ enum {
 typedef struct WheelClass {
     const char *name; /* of the first member */
     int members, *member;
-    Block contact; /* contact[]; rate[] of the slips; grip[] */
-    Block tire;    /* force[] of a wheel with load; without load force[] is 0 */
-    Block balance; /* rate[] of spin and brake; grip[] */
+    Block contact;      /* contact[]; rate[] of the slips; grip[] */
+    Block tire;         /* force[] of a wheel with load; without load force[] is 0 */
+    Block balance;      /* rate[] of spin and brake; grip[] */
     Block by_table;     /* `tire` with curves; without stores: it has none */
     double table_error; /* of it, relative to load and radius, as measured */
 } WheelClass;
@@ -229,8 +229,8 @@ typedef struct Wheels {
     int classes;
     WheelClass *class;
     const struct Curves *curves; /* of blocks by table; NULL: there are none */
-    int links;    /* numbers of link[] */
-    Block link;   /* link[] from a Whole */
+    int links;                   /* numbers of link[] */
+    Block link;                  /* link[] from a Whole */
     Block torque; /* torque[2 i]: drive and brake of the i-th wheel with a tire; rate[] of the model's own states; from
                    * link, fast, u, p, time */
     Block drive;  /* of a powertrain, after the wheels: corrections of rate[] and grip[] of all wheels, and watch[];

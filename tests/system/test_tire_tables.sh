@@ -1,0 +1,93 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# test_tire_tables.sh GICGEN: tires by table. Forces and moments at the states of test_tires.sh are within 1e-6 of the load
+# of the published formulas (tests/data/tires); curves are near what they stand for up to and beyond the end of their
+# tables, at 0 and where there is no number, without a step of their slope; the code compiles without a warning by gcc and
+# clang, as C99 and C++, with either number type; what can't be by table is refused with a remedy.
+gicgen=$(realpath "$1")
+here=$(cd "$(dirname "$0")/.." && pwd)
+runtime=$(cd "$here/../runtime" && pwd)
+models=$(cd "$here/../models" && pwd)
+# shellcheck source=tests/lib/checking.sh
+. "$here/lib/checking.sh"
+cd "$work" || exit 1
+: >out
+: >err
+cp "$here/data/tires/rig.veh" "$here/data/tires/car.tir" .
+cp "$models/tires/hmmwv_pac2002.tir" truck.tir
+for mode in 0 1 2 3; do
+    sed "s/^USE_MODE = 4/USE_MODE = $mode/" car.tir >car_$mode.tir
+done
+"$gicgen" --tire-tables rig.veh -o rig.c
+cp rig.c before.c
+check "what it is off by is said in the header" [ "$(grep -c "by table (--tire-tables): forces off by at most [23].[0-9]e-08 of" rig.h)" -eq 5 ]
+"$gicgen" --tire-tables rig.veh -o rig.c
+check "the same bytes again" cmp before.c rig.c
+mkdir plain && "$gicgen" rig.veh -o plain/rig.c
+check "no tables without the option" sh -c '! grep -q curve plain/rig.c'
+
+compiles() {
+    "$@" -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wdouble-promotion -Werror -ffp-contract=off -I"$runtime" -c rig.c \
+        -o x.o >out 2>&1
+}
+check "gcc" compiles gcc -std=c99 -O1
+check "gcc, float" compiles gcc -std=c99 -O1 -DGIC_FLOAT
+check "clang, float" compiles clang -std=c99 -O0 -DGIC_FLOAT
+check "g++" compiles g++ -std=c++11 -x c++ -O0
+
+# two lines: the comment with the function, and the name of the curve
+sed -n -e 's,^/\* \(GIC_.*\) within .*,\1,p' -e 's,^static gic_real \(rig_curve_[0-9]*\)(gic_real x)$,\1,p' rig.c |
+    sed 'N;s/^\(.*\)\n\(.*\)$/LOOK(\2, \1)/' >curves.inc
+check "there are curves" [ "$(grep -c LOOK curves.inc)" -ge 10 ]
+cp "$here/data/tires/by_table.c" .
+program() {
+    cc -std=c99 "$@" -I. -I"$runtime" by_table.c "$runtime/gic_runtime.c" -o by_table -lm >out 2>err
+}
+check "a program, float" program -O1 -DGIC_FLOAT
+check "curves, float" ./by_table curves
+check "a program" program -O1 -ffp-contract=off
+./by_table curves >said
+check "curves" [ $? -eq 0 ]
+check "all curves" [ "$(grep -c within said)" -eq "$(grep -c LOOK curves.inc)" ]
+cat said >>out
+
+# against RADIUS FRICTION WHEEL...: as in test_tires.sh
+against() {
+    radius=$1 friction=$2
+    shift 2
+    python3 "$here/data/tires/compare.py" states "$radius" >states.csv
+    ./by_table "$friction" <states.csv >results.csv
+    python3 "$here/data/tires/compare.py" check . "$friction" --within 1e-6 "$@" <results.csv >said 2>err
+    check "$*, friction $friction" sh -c "! grep -v ^ok said && [ \$(grep -c ^ok said) -eq $# ]"
+}
+for friction in 1 0.35; do
+    against 0.4699 "$friction" truck truck_right
+    against 0.317 "$friction" car car_right car_0 car_1 car_2 car_3
+done
+check "derivatives beside" "$gicgen" --tire-tables --derivatives --implicit rig.veh -o derived.c
+check "for one scene" "$gicgen" --tire-tables --scene "$models/scenes/tires_brake.scene" "$models/hmmwv_tires.veh" \
+    -o scene.c
+
+# refused: STATUS TEXT ARGUMENT...
+refused() {
+    status=$1 text=$2
+    shift 2
+    rm -f none.c
+    "$gicgen" "$@" -o none.c >out 2>err
+    got=$?
+    check "refused: $text" [ $got -eq "$status" ]
+    check "with the message: $text" grep -q -e "$text" err
+    check "with the remedy: $text" grep -q -e "$([ "$status" -eq 2 ] && echo usage || echo "leave --tire-tables out")" err
+    check "nothing is written: $text" [ ! -e none.c ]
+}
+refused 1 "no tire of 'hmmwv_tmeasy' has a Magic Formula" --tire-tables "$models/hmmwv_tmeasy.veh"
+refused 1 "no wheel of 'hmmwv' has a tire" --tire-tables "$models/hmmwv.veh"
+refused 2 "tire-tables is for the code of one vehicle" --tire-tables --lanes 4 "$models/hmmwv_tires.veh"
+refused 2 "tire-tables is for the code of one vehicle" --tire-tables --batch 4 "$models/hmmwv_tires.veh"
+refused 2 "tire-tables is for the code of one vehicle" --tire-tables --fmu 2 "$models/hmmwv_tires.veh"
+# curvature factors that multiply what a table is off by
+sed 's/^PEX1 = .*/PEX1 = -1e4/' truck.tir >truck_bent.tir && mv truck_bent.tir truck.tir
+refused 1 "tire 'truck' by table is off by [1-9].[0-9]e-0[4-7] of its load" --tire-tables rig.veh
+
+echo "$passed passed, $failed failed"
+[ "$failed" -eq 0 ]
