@@ -51,7 +51,8 @@ static const char usage[] =
     "                   code of one vehicle without --lanes\n"
     "  --solve FORM     of the equations of motion: auto (default: fewer operations), reduced, articulated for long\n"
     "                   chains, or augmented, with all multipliers\n"
-    "  --recovery WAY   of dependent coordinates: auto (default), newton, or closed wherever there is a closed form\n"
+    "  --recovery WAY   of dependent coordinates: auto (default), newton, closed wherever there is a closed form, or\n"
+    "                   polynomial: as auto, with polynomials in place of iterations within a coordinate's range\n"
     "  --scene FILE     also with --report: what the scene saves, and why; with --fmu: what the unit starts with\n"
     "  --templates DIR  take templates from DIR instead of the built-in ones\n"
     "  -h, --help       this text\n"
@@ -133,7 +134,7 @@ static void read_recovery(void *options, char *way)
     ((Options *)options)->recovered = true;
     ((Options *)options)->recovery = recovery_of(way);
     if (((Options *)options)->recovery == RECOVERIES)
-        usage_error("--recovery takes auto, newton or closed, not", way);
+        usage_error("--recovery takes auto, newton, closed or polynomial, not", way);
 }
 
 static void read_fmu(void *options, char *word)
@@ -213,6 +214,11 @@ static Options read_options(int count, char **word)
                     NULL);
     if (options.tire_tables && (options.task != TASK_GENERATE || options.batch.lanes))
         usage_error("--tire-tables is for the code of one vehicle, without --batch, --fmu and --lanes", NULL);
+    if (options.recovery == RECOVERY_POLYNOMIAL && (options.task != TASK_GENERATE || options.batch.lanes ||
+                                                    options.scene || options.derivatives || options.implicit))
+        usage_error("--recovery polynomial is for the code of one vehicle in any scene, without --batch, --lanes, "
+                    "--scene, --derivatives, --implicit, --fmu and --report; leave them out, or take --recovery auto",
+                    NULL);
     if (options.task == TASK_BATCH && !options.batch.lanes)
         options.batch.lanes = 4;
     return options;
@@ -235,6 +241,20 @@ static const Formulation *formulation_of(Pool *pool, const Model *model, const S
                                setting->facts);
 }
 
+/* Polynomials were asked for: end with a message if no subset has any. */
+static void check_polynomials(const Model *model, const Formulation *f)
+{
+    const char *because = "it has no subset of one coordinate that takes Newton's iteration";
+    for (int c = 0; c < f->sequence->classes; ++c) {
+        if (f->plan->formula[c]->polynomial)
+            return;
+        if (f->plan->formula[c]->exact_because)
+            because = f->plan->formula[c]->exact_because;
+    }
+    diag_fail((Place){model->source, 0, 0}, "leave out `--recovery polynomial`",
+              "no subset of the model can be recovered by polynomials: %s", because);
+}
+
 /* FILE.c and FILE.h; the code includes <model>.h, so the names must agree. */
 static void write_code(Pool *pool, const Model *model, const Sequence *sequence, const Options *options,
                        const Setting *setting)
@@ -251,6 +271,8 @@ static void write_code(Pool *pool, const Model *model, const Sequence *sequence,
     const char *slash = strrchr(header, '/'), *name = slash ? slash + 1 : header;
     const bool told = effort_tell(pool, model, sequence, options->solve);
     const Formulation *formulation = formulation_of(pool, model, sequence, options, setting);
+    if (options->recovery == RECOVERY_POLYNOMIAL)
+        check_polynomials(model, formulation);
     if (!batch && options->batch.lanes)
         formulation = formulation_lanes(pool, formulation, options->batch.lanes);
     effort_step(told, "its formulas are made; they are compared with an independent solution next");

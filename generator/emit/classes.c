@@ -87,8 +87,9 @@ static void write_solve_arguments(void *context, Text *out, int indent)
     Generation *g = context;
     const Formula *f = formula_of(g);
     const char *real = style_real(g->style);
-    const Block *const block[] = {&f->predict, &f->chord, &f->solve};
-    write_arguments(g, out, indent, block, 3);
+    const Block *const block[] = {&f->predict, &f->chord, &f->solve, f->polynomial ? &f->polynomial->solve : NULL,
+                                  f->polynomial ? &f->polynomial->within : NULL};
+    write_arguments(g, out, indent, block, f->polynomial ? 5 : 3);
     if (any_reads(block, 3, ARRAY_s, 0))
         line(out, indent, "const %s *const s = old + %d; /* unit velocities at the start */", real, f->layout.start_S);
     if (any_reads(block, 3, ARRAY_f, 0))
@@ -177,6 +178,42 @@ static void write_residual(void *context, Text *out, int indent)
     write_block(context, &formula_of(context)->residual, out, indent);
 }
 
+static void write_within(void *context, Text *out, int indent)
+{
+    write_block(context, &formula_of(context)->polynomial->within, out, indent);
+}
+
+static void write_polynomial_solve(void *context, Text *out, int indent)
+{
+    write_block(context, &formula_of(context)->polynomial->solve, out, indent);
+}
+
+static void write_edge(void *context, Text *out, int indent)
+{
+    write_block(context, &formula_of(context)->polynomial->edge, out, indent);
+}
+
+static void write_made(void *context, Text *out, int indent)
+{
+    line(out, indent, "start[%d] = R(1.0);", formula_of(context)->polynomial->flag);
+}
+
+static void write_not_made(void *context, Text *out, int indent)
+{
+    const int flag = formula_of(context)->polynomial->flag;
+    line(out, indent, "start[%d] = R(0.0);", flag);
+    line(out, indent, "if (old[%d] > R(0.0)) {", flag);
+}
+
+static void write_polynomial(void *context, Text *out, int indent)
+{
+    Generation *g = context;
+    (void)indent;
+    if (formula_of(g)->polynomial)
+        template_expand(g->pool, out, g->templates, "polynomial.c.in", g->model->name,
+                        g->sequence->class[g->class].name, &subset_points, g);
+}
+
 static void write_recovery_loop(void *context, Text *out, int indent)
 {
     Generation *g = context;
@@ -198,11 +235,17 @@ static const Insertion subset_point[] = {{"comment", write_comment},
                                          {"react", write_react},
                                          {"residual", write_residual},
                                          {"recovery loop", write_recovery_loop},
+                                         {"polynomial", write_polynomial},
+                                         {"within", write_within},
+                                         {"polynomial solve", write_polynomial_solve},
+                                         {"made", write_made},
+                                         {"not made", write_not_made},
+                                         {"edge", write_edge},
                                          {NULL, NULL}};
 
-const Insertions subset_points = {
-    (const char *const[]){"subset.c.in", "recovery_loop.c.in", "closed.c.in", "residual.c.in", "react.c.in", NULL},
-    subset_point, NULL};
+const Insertions subset_points = {(const char *const[]){"subset.c.in", "recovery_loop.c.in", "polynomial.c.in",
+                                                        "closed.c.in", "residual.c.in", "react.c.in", NULL},
+                                  subset_point, NULL};
 
 /* What the columns of a table of constants are. */
 static void write_columns(Text *out, const Dag *dag, const Constants *k, const char *const *member)

@@ -82,7 +82,8 @@ typedef struct Table Table; /* base/table.h */
     X(local, "local", "derivatives of what wheels, own states and the powertrain do by what moves each of them") \
     X(half, "half", "derivatives of a wheel's contact and tire by what moves the wheel") \
     X(factor, "factor", "factors of the mass matrix") \
-    X(cut, "cut", "what an element exerts, as its derivatives are asked for; in no code")
+    X(cut, "cut", "what an element exerts, as its derivatives are asked for; in no code") \
+    X(inside, "inside", "how far a coordinate is within the range of polynomials")
 
 typedef enum Array {
 #define ARRAY_ENUM(name, text, what) ARRAY_##name,

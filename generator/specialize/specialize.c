@@ -263,6 +263,7 @@ static void narrow_class(Narrower *n, int c)
     formula->solve = partial_block(&p, &general->solve);
     formula->residual = partial_block(&p, &general->residual);
     formula->react = partial_block(&p, &general->react);
+    formula->polynomial = NULL;
     n->plan->formula[c] = formula;
     remember(n, class, formula);
 }

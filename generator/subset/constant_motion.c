@@ -146,6 +146,22 @@ static bool is_read(const Readers *readers, const Class *class, int body, int nu
     return any;
 }
 
+/* Polynomials store what `solve` stores. */
+static void drop_others(const Formula *f)
+{
+    if (!f->polynomial)
+        return;
+    Block *block = &f->polynomial->solve;
+    const int stores = block->stores;
+    block->stores = 0;
+    for (int i = 0; i < stores; ++i)
+        for (int j = 0; j < f->solve.stores; ++j)
+            if (element_same(f->solve.store[j].target, block->store[i].target)) {
+                block->store[block->stores++] = block->store[i];
+                break;
+            }
+}
+
 void subsets_drop_constants(Pool *pool, const Model *model, const Sequence *sequence, Formula *const *formula)
 {
     Readers readers = {.sequence = sequence, .read = pool_alloc(pool, (size_t)model->bodies * sizeof *readers.read)};
@@ -175,5 +191,6 @@ void subsets_drop_constants(Pool *pool, const Model *model, const Sequence *sequ
                 continue;
             block->store[block->stores++] = store;
         }
+        drop_others(formula[c]);
     }
 }

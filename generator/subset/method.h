@@ -10,7 +10,7 @@
 typedef enum Solve { SOLVE_AUTO, SOLVE_REDUCED, SOLVE_ARTICULATED, SOLVE_AUGMENTED, SOLVES } Solve;
 
 /* The way to find a subset's poses: the one with fewer operations; Newton's iteration everywhere; a closed form
- * wherever there is one. */
-typedef enum Recovery { RECOVERY_AUTO, RECOVERY_NEWTON, RECOVERY_CLOSED, RECOVERIES } Recovery;
+ * wherever there is one; as auto, with polynomials in place of Newton's iteration within the ranges of coordinates. */
+typedef enum Recovery { RECOVERY_AUTO, RECOVERY_NEWTON, RECOVERY_CLOSED, RECOVERY_POLYNOMIAL, RECOVERIES } Recovery;
 
 #endif

@@ -716,8 +716,9 @@ static bool refuses_design(const Work *w, const Block *block)
     return false;
 }
 
-static Formula *formulate_class(Work *w, Formula *const *made, Solve solve, Recovery recovery)
+static Formula *formulate_class(Work *w, Formula *const *made, const Sampling *sampling, Solve solve, Recovery recovery)
 {
+    const double bound = 1e-13; /* of polynomials */
     use_constants_of_knowns(w, made);
     Formula *closed = recovery == RECOVERY_NEWTON ? NULL : formulate_closed(w, solve);
     if (closed && recovery == RECOVERY_CLOSED)
@@ -725,7 +726,11 @@ static Formula *formulate_class(Work *w, Formula *const *made, Solve solve, Reco
     if (closed && refuses_design(w, &closed->solve))
         closed = NULL;
     Formula *newton = formulate_newton(w, solve);
-    return closed && recovery_cost(closed) < recovery_cost(newton) ? closed : newton;
+    if (closed && recovery_cost(closed) < recovery_cost(newton))
+        return closed;
+    if (recovery == RECOVERY_POLYNOMIAL)
+        subset_polynomial(w, newton, made, sampling, bound);
+    return newton;
 }
 
 /* ---- all classes -------------------------------------------------------------------------------------------- */
@@ -777,7 +782,7 @@ Formula **subsets_formulate(Pool *pool, const Model *model, const Sequence **seq
     for (int s = 0; s < split->subsets; ++s) {
         int c = split->subset[s].class;
         if (c >= 0 && !formula[c])
-            formula[c] = formulate_class(work[c], formula, solve, recovery);
+            formula[c] = formulate_class(work[c], formula, sampling, solve, recovery);
     }
     subsets_drop_constants(pool, model, split, formula);
     *sequence = split;

@@ -182,6 +182,23 @@ typedef struct BodyInertia {
     Ex mass, arm[3], at[3], J[6], force[3], moment[3];
 } BodyInertia;
 
+/* Motions of subsets of one coordinate by polynomials of it within its range: what replaces Newton's iteration there.
+ */
+typedef struct Polynomial {
+    Block within; /* four numbers in inside[]: none is negative where coordinate and rate leave the subset within the
+                   * range for the time `ahead` */
+    Ex inside[4]; /* these */
+    Block solve;  /* motion and inertia */
+    Block edge;   /* q at the coordinate, or at the end of its range that it is beyond */
+    int degree;   /* the largest one */
+    int flag;     /* place in a start: 1 if polynomials made it, so that it has neither pose nor factors */
+    double bound; /* of errors of places relative to the subset's size, of Euler parameters, and of unit velocities and
+                   * accelerations relative to the largest ones of their kind */
+    double worst; /* the largest one found, in double precision */
+    int points;   /* at so many points of each range */
+    const double *low, *high; /* [members] */
+} Polynomial;
+
 /* The formulas of a class. C names: k constants of the member; d constants that tunable parameters change; m0, m1, ...
  * motions of the knowns; x, rate, change: value, rate and change since the start of the deps; turn: angular velocity of
  * the base; ahead: time for which coordinates must stay independent at the present velocities; q: pose; s and f: S and
@@ -205,9 +222,11 @@ typedef struct Formula {
                          * their derivatives' residuals, relative to the magnitudes of their terms */
     Block react;        /* multipliers from the wrenches w that the bodies need, both in w; f: stored factors. The load
                          * on knowns is subtracted from their wrenches w0, w1, .... Only what outputs need */
-    const Implicit *implicit; /* NULL: closed */
-    int derived;              /* numbers d[] that follow tunable parameters */
-    Ex *derived_of;           /* [derived][members] their formulas */
+    const Implicit *implicit;      /* NULL: closed */
+    struct Polynomial *polynomial; /* NULL: none */
+    const char *exact_because;     /* why there is none although polynomials are asked for; NULL: other reasons */
+    int derived;                   /* numbers d[] that follow tunable parameters */
+    Ex *derived_of;                /* [derived][members] their formulas */
 } Formula;
 
 /* Formulas of all classes [classes]; fills the sampling. Members that need other pivots than the first member of their

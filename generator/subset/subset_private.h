@@ -162,6 +162,11 @@ bool subset_presolves_point(const Work *w, int body);
 bool subset_presolves_rotation(const Work *w, int body);
 void subset_drop_presolved(const Work *w, Row *row, const int *row_of);
 
+/* polynomial.c: give a formula polynomials of its one coordinate, with errors below a bound, where that is possible;
+ * says why not in it. made: [classes] formulas of those before. Ends in a message where its range has a singular
+ * configuration or its geometry is tunable. */
+void subset_polynomial(Work *w, Formula *formula, Formula *const *made, const Sampling *sampling, double bound);
+
 /* constant_motion.c: replace numbers of a known's motion, in the order of its own deps, that are the same in every
  * configuration by constants of the class. formula: [classes] those made so far, or NULL. */
 void subset_use_constants(Work *w, Formula *const *formula, int known, Motion *motion);

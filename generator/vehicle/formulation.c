@@ -32,8 +32,10 @@ Solve solve_of(const char *name)
     return (Solve)i;
 }
 
-const char *const recovery_name[RECOVERIES] = {
-    [RECOVERY_AUTO] = "auto", [RECOVERY_NEWTON] = "newton", [RECOVERY_CLOSED] = "closed"};
+const char *const recovery_name[RECOVERIES] = {[RECOVERY_AUTO] = "auto",
+                                               [RECOVERY_NEWTON] = "newton",
+                                               [RECOVERY_CLOSED] = "closed",
+                                               [RECOVERY_POLYNOMIAL] = "polynomial"};
 
 Recovery recovery_of(const char *name)
 {

@@ -27,7 +27,7 @@ const char *gicl_word(const char *member, int index)
     if (!strcmp(member, "solve"))
         return index < SOLVES ? solve_name[index] : NULL;
     if (!strcmp(member, "recovery"))
-        return index < RECOVERIES ? recovery_name[index] : NULL;
+        return index < RECOVERY_POLYNOMIAL ? recovery_name[index] : NULL; /* it is the last one, for gicgen alone */
     if (!strcmp(member, "integrator"))
         return integrator_word(index);
     int i = 0;
@@ -79,7 +79,7 @@ static void take_options(OpenModel *model, const gicl_options *given)
                                      .quiet = true};
     if (model->options.solve == SOLVES)
         option_fail("solve", o->solve, "one of auto, reduced, articulated, augmented");
-    if (model->options.recovery == RECOVERIES)
+    if (model->options.recovery >= RECOVERY_POLYNOMIAL)
         option_fail("recovery", o->recovery, "one of auto, newton, closed");
     if (o->integrator && integrator_method(o->integrator) < 0)
         option_fail("integrator", o->integrator, "one of ab3, rk4, ros2, ros3, imex, adams, rkck, bdf, auto");
