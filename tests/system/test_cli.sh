@@ -51,7 +51,7 @@ says err "an argument is missing after: --solve"
 run 2 "$model" --solve quickly
 says err "--solve takes auto, reduced, articulated or augmented, not: quickly"
 run 2 "$model" --recovery quickly
-says err "--recovery takes auto, newton or closed, not: quickly"
+says err "--recovery takes auto, newton, closed or polynomial, not: quickly"
 run 2 --report page.html -o page.c "$model"
 says err "--graph and --report name their file themselves, without -o: page.c"
 run 2 --solve reduced --sequence "$model"
