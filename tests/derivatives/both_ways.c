@@ -1,8 +1,12 @@
 /* SPDX-License-Identifier: MIT
  * Right-hand side and outputs along a direction and backwards: w . (J d) = (J^T w) . d. MODEL and CODE as in program.c.
  *
- *     program STATES TOLERANCE     prints the largest deviation, relative to the sum of the terms' magnitudes
- */
+ *     program STATES TOLERANCE [conditioned]     prints the largest deviation, relative to the sum of the terms'
+ * magnitudes
+ *
+ * conditioned: near singular configurations roundings grow. What a change of the state by its roundings does to w . (J
+ * d) is measured at each state; 16 times that is allowed in addition, and where it is above 1e-6 of the sum, the state
+ * does not count. */
 #include CODE
 
 #include <stdio.h>
@@ -16,6 +20,7 @@ static const gic_model *const code = &OF(_model);
 static MODEL start, self;
 static OF(_direction) along, by, seed_of;
 static gic_real jacobian[1 << 18];
+static int conditioned;
 
 /* Between -0.5 and 0.5. */
 static double chance(void)
@@ -69,11 +74,38 @@ static double together(int32_t count, const gic_real *a, const gic_real *b, doub
     return sum;
 }
 
-/* The deviation at the present state; -1: it has a status. */
+/* w . (J d) at the present state, with the sum of its terms' magnitudes added to size; 0: it has a status. */
+static int forwards(int outputs, double *sum, double *size)
+{
+    if ((outputs ? OF(_tangent_outputs)(&self, &along) : OF(_tangent)(&self, 0, self.state, &along)) != GIC_OK)
+        return 0;
+    *sum = together(code->slow_count + code->fast_count, along.rate, seed_of.rate, size);
+    *sum += outputs ? together(code->output_count, along.output, seed_of.output, size) : 0;
+    return 1;
+}
+
+/* By how much roundings of the state change w . (J d), at most of a few; -1: there is a status. */
+static double rounding(int outputs, double sum)
+{
+    const MODEL kept = self;
+    double most = 0, other, size = 0;
+    for (int k = 0; k < 4; ++k) {
+        for (int32_t i = 0; i < code->slow_count + code->fast_count; ++i)
+            self.state[i] = kept.state[i] * (1 + (gic_real)(8e-16 * chance()));
+        const int good = forwards(outputs, &other, &size);
+        self = kept;
+        if (!good)
+            return -1;
+        most = fabs(other - sum) > most ? fabs(other - sum) : most;
+    }
+    return most;
+}
+
+/* The deviation at the present state; -1: it has a status, or is too near a singular configuration. */
 static double compare(int outputs)
 {
     const int32_t n = code->slow_count + code->fast_count;
-    double size = 0, left, right;
+    double size = 0, left, right, allowed = 0;
     memset(&along, 0, sizeof along);
     memset(&by, 0, sizeof by);
     draw(n, 1, along.state);
@@ -84,21 +116,23 @@ static double compare(int outputs)
     for (int32_t i = 0; i < code->parameter_count; ++i)
         along.parameter[i] = (gic_real)(0.1 * chance()) * self.parameter[i];
     seed_of = by;
-    if (outputs) {
-        if (OF(_tangent_outputs)(&self, &along) != GIC_OK || OF(_adjoint_outputs)(&self, &by, jacobian) != GIC_OK)
-            return -1;
-    } else if (OF(_tangent)(&self, 0, self.state, &along) != GIC_OK ||
-               OF(_adjoint)(&self, 0, self.state, &by, jacobian) != GIC_OK) {
+    if (!forwards(outputs, &left, &size))
         return -1;
+    if (conditioned) {
+        allowed = rounding(outputs, left);
+        if (allowed < 0 || allowed > 1e-6 * size)
+            return -1;
     }
+    if ((outputs ? OF(_adjoint_outputs)(&self, &by, jacobian) : OF(_adjoint)(&self, 0, self.state, &by, jacobian)) !=
+        GIC_OK)
+        return -1;
     if (memcmp(seed_of.rate, by.rate, (size_t)n * sizeof *by.rate) != 0)
         return 1; /* weights stay */
-    left = together(n, along.rate, by.rate, &size);
-    left += outputs ? together(code->output_count, along.output, by.output, &size) : 0;
     right = together(n, along.state, by.state, &size) + together(code->input_count, along.input, by.input, &size);
     right += together(code->parameter_count, along.parameter, by.parameter, &size);
     right += together(code->port_count, along.port, by.port, &size);
-    return fabs(left - right) / (size > 0 ? size : 1);
+    const double off = fabs(left - right);
+    return off <= 16 * allowed ? 0 : (off - 16 * allowed) / (size > 0 ? size : 1);
 }
 
 int main(int argc, char **argv)
@@ -107,6 +141,7 @@ int main(int argc, char **argv)
     const double tolerance = argc > 2 ? atof(argv[2]) : 1e-13;
     double worst = 0;
     int good = 0, tried;
+    conditioned = argc > 3;
     if (OF(_setup)(&start) != GIC_OK)
         return 1;
     if (code->free_base)
@@ -123,5 +158,5 @@ int main(int argc, char **argv)
     by.rate[0] = (gic_real)NAN;
     if (OF(_adjoint)(&self, 0, self.state, &by, jacobian) != GIC_ERROR_INPUT)
         return 1 + printf("a weight that is no number is taken\n");
-    return !(good == states && worst <= tolerance);
+    return !(good >= (conditioned ? (states + 3) / 4 : states) && worst <= tolerance);
 }

@@ -2,8 +2,10 @@
  * Derivatives of a scalar of a whole run (gic_gradient.h). MODEL and CODE as in program.c.
  *
  *     program STEPS STEP TOLERANCE     tangents against adjoints, for both methods, with and without outputs; numbers
- * of checkpoints, memory that is too small, arguments. Prints a slope a line with -DQUAD: program STEPS STEP  the same
- * slopes by differences of fourth order of runs in quad precision
+ * of checkpoints, memory that is too small, arguments. Prints a slope a line with -DQUAD: program STEPS STEP
+ * [REACH SLOPES]  the same slopes by differences of fourth order, over REACH (1e-7), of runs in quad precision; and,
+ * with a file of what the former printed, remainders of those slopes: (value(h) - value(0) - slope h) / h for h = REACH
+ * and half of that
  *
  * All directions and weights come from a generator of numbers, the same in both. */
 #ifdef QUAD
@@ -167,17 +169,26 @@ static gic_real scalar(const Change *change, gic_real reach, int method, int loo
 int main(int argc, char **argv)
 {
     const int64_t steps = argc > 1 ? atoll(argv[1]) : 40;
-    const gic_real step = argc > 2 ? atof(argv[2]) : 0.001, reach = 1e-7Q;
+    const gic_real step = argc > 2 ? atof(argv[2]) : 0.001, reach = argc > 3 ? atof(argv[3]) : 1e-7Q;
+    FILE *const slopes = argc > 4 ? fopen(argv[4], "r") : NULL;
     static Change change;
     set_up();
     for (int method = GIC_AB3; method <= GIC_RK4; ++method)
         for (int looks = 0; looks < 2; ++looks)
             for (int d = 0; d < DIRECTIONS; ++d) {
                 gic_real s[4];
+                double slope, size;
                 choose(&change, d);
                 for (int i = 0; i < 4; ++i)
                     s[i] = scalar(&change, reach * (i < 2 ? i - 2 : i - 1), method, looks, steps, step);
-                printf("%.17g\n", (double)((s[0] - s[3] + 8 * (s[2] - s[1])) / (12 * reach)));
+                printf("%.17g", (double)((s[0] - s[3] + 8 * (s[2] - s[1])) / (12 * reach)));
+                if (slopes && fscanf(slopes, "%lf %lf", &slope, &size) == 2) {
+                    const gic_real still = scalar(&change, 0, method, looks, steps, step);
+                    const gic_real half = scalar(&change, reach / 2, method, looks, steps, step);
+                    printf(" %.17g %.17g", (double)((s[2] - still) / reach - slope),
+                           (double)((half - still) / (reach / 2) - slope));
+                }
+                printf("\n");
             }
     return 0;
 }
