@@ -14,7 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { PEAK = 16, NUMBERS = 16, VARIABLES = 256, WORD = 400 };
+enum { PEAK = 16, NUMBERS = 16, VARIABLES = 256, WORD = 400, PATIENCE = 5 };
 
 typedef struct Bounded {
     char name[WORD]; /* or a formula */
@@ -32,6 +32,8 @@ typedef struct Problem {
     double start[VARIABLES], x[VARIABLES];            /* x: where numbers are known, 0 and 1 at the bounds */
     double value[NUMBERS], slope[NUMBERS][VARIABLES]; /* [numbers][variables] */
     int known;
+    double last; /* value of the last step of the search */
+    int same;    /* steps in which it stayed */
     char word[VARIABLES][WORD + 40];
 } Problem;
 
@@ -163,6 +165,19 @@ static Bool no_hessian(int n, double *x, Bool new_x, double factor, int m, doubl
     return 0;
 }
 
+/* The search goes on until the value has stayed the same for PATIENCE steps, with other numbers within their bounds. */
+static Bool go_on(int mode, int step, double value, double outside, double inf_du, double mu, double size,
+                  double damping, double alpha_du, double alpha, int trials, void *data)
+{
+    (void)mode, (void)step, (void)inf_du, (void)mu, (void)size, (void)damping, (void)alpha_du, (void)alpha,
+        (void)trials;
+    Problem *problem = data;
+    const int stays = outside < 1e-6 && fabs(value - problem->last) <= 1e-6 * (fabs(value) + fabs(problem->last));
+    problem->same = stays ? problem->same + 1 : 0;
+    problem->last = value;
+    return problem->same < PATIENCE;
+}
+
 static int fail(const Problem *problem)
 {
     gicl_message message;
@@ -212,12 +227,15 @@ int main(int count, char **word)
                                             high_number, problem->variables * (problem->numbers - 1), 0, 0, least,
                                             within, least_slope, within_slope, no_hessian);
     AddIpoptStrOption(ipopt, "hessian_approximation", "limited-memory");
+    AddIpoptIntOption(ipopt, "limited_memory_max_history", 30);
+    AddIpoptStrOption(ipopt, "mu_strategy", "adaptive");
     AddIpoptStrOption(ipopt, "sb", "yes");
     AddIpoptIntOption(ipopt, "print_level", 0);
-    AddIpoptIntOption(ipopt, "max_iter", 60);
+    AddIpoptIntOption(ipopt, "max_iter", 100);
     AddIpoptNumOption(ipopt, "tol", 1e-5);
     AddIpoptNumOption(ipopt, "acceptable_tol", 1e-3);
     AddIpoptIntOption(ipopt, "acceptable_iter", 5);
+    SetIntermediateCallback(ipopt, go_on);
     const int status = (int)IpoptSolve(ipopt, x, NULL, &value, NULL, NULL, NULL, problem);
     FreeIpoptProblem(ipopt);
     if (status < 0 && status != Maximum_Iterations_Exceeded) {

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # test_ipopt.sh GICRUN: runtime/examples/ipopt.c where Ipopt is there: quadratic problems in closed form, with a bound and a
-# constraint.
+# constraint; the least time through a double lane change (tests/vehicle/least_time.py).
 gicrun=$1
 root=$(cd "$(dirname "$0")/../.." && pwd)
 # shellcheck source=tests/lib/checking.sh
@@ -50,6 +50,13 @@ check 'a constraint and a bound' near parameter/a 1.5
 # mistakes
 check 'no bounds' eval '! "$solve" "$work/mass.veh" "$work/mass.scene" a parameter/a'
 check 'no such number' eval '! "$solve" "$work/mass.veh" "$work/mass.scene" a parameter/z=0:1'
+
+# ---- the least time through a double lane change, and its picture
+/usr/bin/python3 -B "$root/tests/vehicle/least_time.py" "$gicrun" "$root/models" "$work" "$solve" >"$work/said" 2>&1
+verdict $? 'the least time'
+run -q "$root/models/optimize/least_time.veh" "$root/models/optimize/least_time_found.scene" -o "$work/found.csv" --plot "$work/found.svg"
+drawn() { exits 0 && [ "$(grep -c '<path\|<polyline' "$work/found.svg")" -ge 6 ] && ! grep -q 'nan' "$work/found.svg"; }
+check 'a picture' drawn
 
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 # test_whole_run.sh GICGEN: derivatives of whole runs by generated code (gic_gradient.h), tangents against adjoints, 1e-13,
 # and both against differences of runs of the same code in quad precision; right-hand sides and outputs backwards against
-# forwards at 1,000 random states of every model, 1e-13; all checkpoints and few; single precision (derivatives/*.c).
+# forwards at 1,000 random states of every model, 1e-13; all checkpoints and few; single precision; vehicles of a batch (derivatives/*.c).
 gicgen=$(realpath "$1")
 root=$(cd "$(dirname "$0")/../.." && pwd)
 # shellcheck source=tests/lib/checking.sh
@@ -76,6 +76,17 @@ check "by Newton's iteration: code" write "$models/hmmwv.veh" --recovery=newton
 check "by Newton's iteration: backwards as forwards" both_ways hmmwv 1e-13
 check "by Newton's iteration: a run backwards as forwards" whole hmmwv 24 0.002 1e-13
 check "by Newton's iteration: a run in quad precision" quad hmmwv 24 0.002
+
+# ---- vehicles of a batch, the same bits as by themselves
+
+batch() { # NAME [FLAG]
+    "$gicgen" --batch 6 "$models/$1.veh" -o "$work/code/$1_batch.c" &&
+        gcc -std=gnu11 -O0 -w -ffp-contract=off -DGIC_BATCH_LIBM ${2:+"$2"} -I"$work/code" -I"$runtime" "-DMODEL=$1" "-DCODE=\"$1_batch.h\"" \
+            "$programs/batch.c" "$work/code/$1.c" "$work/code/$1_batch.c" "$runtime/gic_runtime.c" -o "$work/batch" -lm && "$work/batch"
+} >"$work/said" 2>&1
+check 'vehicles of a batch: code' write "$models/hmmwv.veh"
+for model in pendulum hmmwv hmmwv_vehicle; do check "$model: vehicles of a batch" batch "$model"; done
+check 'hmmwv_vehicle: vehicles of a batch, single precision' batch hmmwv_vehicle -DGIC_FLOAT
 
 # ---- what has no derivative: a gear that is left at the start of a run
 
