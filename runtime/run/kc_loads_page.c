@@ -37,6 +37,12 @@ static int column_of(const SheetRow *row)
     return -1;
 }
 
+/* To what is shown: for 1 kN, and for 100 N m. */
+static double scale_of(const SheetRow *row)
+{
+    return row->scale * (strstr(row->unit, "N m") ? 0.1 : 1);
+}
+
 /* True: both are of one load and one wheel. */
 static bool is_of_line(const SheetRow *a, const SheetRow *b)
 {
@@ -83,8 +89,8 @@ static int write_line(const Sheet *sheet, Text *out, int i, const double *most)
     for (int c = 0; c < QUANTITIES; ++c) {
         double value[2] = {NAN, NAN};
         if (of[c]) {
-            value[0] = of[c]->value * of[c]->scale;
-            value[1] = of[c]->other * of[c]->scale;
+            value[0] = of[c]->value * scale_of(of[c]);
+            value[1] = of[c]->other * scale_of(of[c]);
         }
         text_print(out, "<td class=\"n\">");
         for (int k = 0; k < vehicles; ++k)
@@ -125,7 +131,7 @@ static void write_tables(void *context, Text *out, int indent)
             text_print(out, "</p>\n");
         }
     for (int i = 0; i < sheet->rows; ++i) {
-        const double scale = sheet->row[i].scale, *value[2] = {&sheet->row[i].value, &sheet->row[i].other};
+        const double scale = scale_of(&sheet->row[i]), *value[2] = {&sheet->row[i].value, &sheet->row[i].other};
         double *of = &most[column_of(&sheet->row[i])];
         for (int k = 0; k < 2; ++k)
             *of = isfinite(*value[k]) ? fmax(*of, fabs(*value[k] * scale)) : *of;

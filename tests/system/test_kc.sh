@@ -192,6 +192,8 @@ check 'that of two' exits 0
 check 'has a bar a vehicle' sh -c "grep -o '<rect' '$work/loads.html' | wc -l | grep -qx 280"
 run --kc --loads --axle rear --compare "$models/hmmwv.veh" "$models/hatchback.veh"
 check 'and their numbers' sh -c "awk '/  lateral: toe, / { print \$(NF - 2 + (\$NF != \"*\")); exit }' '$work/out' | grep -qxF \"\$(sed -n 's/^<tr[^>]*><td>lateral<.td><td>[^<]*<.td><td class=.n.>\\([^<]*\\)<br>.*/\\1/p' '$work/loads.html' | head -1)\""
+run --kc --loads --axle rear "$models/hatchback.veh"
+check 'an aligning torque of 100 N m in both' sh -c "toe=\$(awk '\$1 == \"aligning\" && \$2 != \"opposed\" { print \$3; exit }' '$work/out') && grep -qF \"<td>aligning</td><td>rear_l</td><td class=\\\"n\\\">\$toe<br>\" '$work/loads.html'"
 # one axle is the foremost and the rearmost one, and stands beside that of a vehicle
 sed '/^  r_/d; /rear/d' "$root/tests/data/manoeuvre/bar.veh" >"$work/single.veh"
 run --kc --axle front --compare "$work/single.veh" "$root/tests/data/manoeuvre/bar.veh"
