@@ -214,7 +214,10 @@ static Options read_options(int count, char **word)
                     "--scene",
                     NULL);
     if (options.tire_tables && (options.task != TASK_GENERATE || options.batch.lanes))
-        usage_error("--tire-tables is for the code of one vehicle, without --batch, --fmu and --lanes", NULL);
+        usage_error("--tire-tables is for the code of one vehicle: it goes with --derivatives, --implicit, --scene, "
+                    "--solve and "
+                    "--recovery, and not with --batch, --fmu, --lanes, --main, --report and what looks at a model",
+                    NULL);
     if (options.recovery == RECOVERY_POLYNOMIAL && (options.task != TASK_GENERATE || options.batch.lanes ||
                                                     options.scene || options.derivatives || options.implicit))
         usage_error("--recovery polynomial is for the code of one vehicle in any scene, without --batch, --lanes, "

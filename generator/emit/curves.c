@@ -60,8 +60,9 @@ void write_curve_error(const Generation *g, Text *out)
         if (class->by_table.stores)
             text_print(out,
                        " * Tire '%s' by table (--tire-tables): forces off by at most %.1e of the load, moments of load "
-                       "times radius,\n * measured at %d places in the ranges of its data; %.0e is the bound.\n *\n",
+                       "times radius,\n * measured at %d places in the ranges of its data; where errors of all tables "
+                       "add up, at most %.1e, at %d\n * places. %.0e is the bound.\n *\n",
                        g->model->tire[g->model->wheel[class->member[0]].tire].name, class->table_error,
-                       TIRE_TABLE_PLACES, TIRE_TABLE_BOUND);
+                       TIRE_TABLE_PLACES, class->table_bound, TIRE_TABLE_BOUND_PLACES, TIRE_TABLE_BOUND);
     }
 }

@@ -229,6 +229,8 @@ typedef struct Dag {
     DagSystem *system;
     const Table *tables;         /* what OP_TABLE looks up in, as far as samples go; NULL: they are 0 */
     const struct Curves *curves; /* of OP_CURVE: curve.h */
+    Ex moved;                    /* a variable whose value dag_evaluate() makes larger by `moves`; 0: none */
+    double moves;
     uint32_t mask;
 } Dag;
 

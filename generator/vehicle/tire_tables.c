@@ -55,15 +55,63 @@ static void set_place(const Probe *probe, int number)
                                   [VARY_FRICTION] = number % 4 < 2 ? 1 : 0.1 + 1.1 * u[VARY_FRICTION]};
     for (int i = 0; i < VARIED; ++i)
         ex_set_sample(probe->dag, probe->input[i], 0, value[i]);
+    /* weights of combined slip are largest at these slips, with stiff data in a narrow peak */
+    const double off = side[VARY_CAMBER] * exp(-14 * u[VARY_FRICTION]);
+    const double peak[] = {-pac[PAC_RHY1] - pac[PAC_RHY2] * (value[VARY_LOAD] / nominal - 1), -pac[PAC_RHX1]};
+    for (int i = 0; i < 2; ++i)
+        if (number % 8 == 5 + 2 * i)
+            ex_set_sample(probe->dag, probe->input[i ? VARY_TANGENT : VARY_KAPPA], 0, peak[i] + off);
 }
 
-/* The largest difference of the forces relative to the load, and of the moments relative to the load by the radius. */
-static double measure(const WheelClass *class, const Tire *tire)
+/* The largest share of forces in the load, and of moments in the load by the radius, of a difference. */
+static double share_of(const WheelClass *class, const Tire *tire, double load, const double *a, const double *b)
+{
+    double worst = 0;
+    for (int i = 0; i < class->tire.stores; ++i) {
+        const int force = class->tire.store[i].target.index;
+        const double share = fabs(a[i] - b[i]) / (force == TIRE_FX || force == TIRE_FY ? load : load * tire->radius);
+        worst = share <= worst ? worst : share; /* what is not finite stays */
+    }
+    return worst;
+}
+
+static void forces(const Block *block, double *out)
+{
+    for (int i = 0; i < block->stores; ++i)
+        out[i] = ex_value(block->dag, block->store[i].value, 0);
+}
+
+/* What the errors of all curves add up to at a place, each as large as it is anywhere: a narrow peak that no place
+ * meets is no better, for the forces change with a curve's value there by as much as elsewhere. */
+static double errors_add_up(const WheelClass *class, const Tire *tire, double load)
+{
+    Dag *dag = class->by_table.dag;
+    const int stores = class->by_table.stores;
+    double at[stores], moved[stores], sum[stores], none[stores];
+    forces(&class->by_table, at);
+    for (int i = 0; i < stores; ++i)
+        sum[i] = none[i] = 0;
+    for (Ex e = 1; e < (Ex)dag->nodes; ++e) {
+        if (dag->node[e].op != OP_CURVE)
+            continue;
+        dag->moved = e;
+        dag->moves = dag->curves->curve[dag->node[e].arg[1]].error;
+        dag_evaluate(dag, 0, 1);
+        forces(&class->by_table, moved);
+        for (int i = 0; i < stores; ++i)
+            sum[i] += fabs(moved[i] - at[i]);
+    }
+    dag->moved = 0;
+    return share_of(class, tire, load, sum, none);
+}
+
+/* table_error and table_bound of a class. */
+static void measure(WheelClass *class, const Tire *tire)
 {
     static const int place[VARIED] = {CONTACT_LOAD, CONTACT_KAPPA, CONTACT_TANGENT, CONTACT_CAMBER, CONTACT_FRICTION};
     Dag *dag = class->tire.dag;
     Probe probe = {.dag = dag, .tire = tire};
-    double none[dag->samples], worst = 0;
+    double none[dag->samples], by_formula[class->tire.stores], by_table[class->tire.stores];
     for (int s = 0; s < dag->samples; ++s)
         none[s] = 0;
     for (int i = 0; i < VARIED; ++i) {
@@ -74,18 +122,18 @@ static double measure(const WheelClass *class, const Tire *tire)
         set_place(&probe, number);
         dag_evaluate(dag, 0, 1);
         const double load = ex_value(dag, probe.input[VARY_LOAD], 0);
-        for (int i = 0; i < class->tire.stores; ++i) {
-            const int force = class->tire.store[i].target.index;
-            const double off =
-                fabs(ex_value(dag, class->tire.store[i].value, 0) - ex_value(dag, class->by_table.store[i].value, 0));
-            const double share = off / (force == TIRE_FX || force == TIRE_FY ? load : load * tire->radius);
-            worst = share <= worst ? worst : share; /* what is not finite stays */
+        forces(&class->tire, by_formula);
+        forces(&class->by_table, by_table);
+        const double error = share_of(class, tire, load, by_formula, by_table);
+        class->table_error = error <= class->table_error ? class->table_error : error;
+        if (number < TIRE_TABLE_BOUND_PLACES) {
+            const double bound = errors_add_up(class, tire, load);
+            class->table_bound = bound <= class->table_bound ? class->table_bound : bound;
         }
     }
     for (int i = 0; i < VARIED; ++i)
         ex_set_sample(dag, probe.input[i], 0, probe.kept[i]);
     dag_evaluate(dag, 0, 1);
-    return worst;
 }
 
 const Formulation *formulation_tire_tables(Pool *pool, const Formulation *formulation)
@@ -108,7 +156,11 @@ const Formulation *formulation_tire_tables(Pool *pool, const Formulation *formul
         if (tire->type != TIRE_PAC2002 || tire->mode == 0)
             continue;
         class->by_table = block_with_curves(&class->tire, curves);
-        class->table_error = measure(class, tire);
+        measure(class, tire);
+        if (!(class->table_bound <= TIRE_TABLE_BOUND))
+            diag_fail(tire->at, "leave --tire-tables out",
+                      "errors of tables for tire '%s' may add up to %.1e of its load; %.0e is the bound", tire->name,
+                      class->table_bound, TIRE_TABLE_BOUND);
         if (!(class->table_error <= share * TIRE_TABLE_BOUND))
             diag_fail(
                 tire->at, "leave --tire-tables out",

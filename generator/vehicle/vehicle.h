@@ -222,6 +222,7 @@ typedef struct WheelClass {
     Block balance;      /* rate[] of spin and brake; grip[] */
     Block by_table;     /* `tire` with curves; without stores: it has none */
     double table_error; /* of it, relative to load and radius, as measured */
+    double table_bound; /* what the largest errors of all its curves add up to, to first order */
 } WheelClass;
 
 typedef struct Wheels {
@@ -357,11 +358,12 @@ double formulation_numbers(Pool *pool, const Model *model, const Sequence *seque
 void formulation_blocks(Pool *pool, Formulation *f);
 
 /* tire_tables.c: the formulation whose slip forces of Magic Formulas are found by tables, with TIRE_TABLE_BOUND as the
- * largest error of forces relative to the load, and of moments to load times radius; measured at TIRE_TABLE_PLACES, and
- * a message where half of the bound is exceeded or no tire has such formulas. For scalar code; derivatives are those of
+ * largest error of forces relative to the load, and of moments to load times radius; measured at TIRE_TABLE_PLACES,
+ * and a message where half of the bound is exceeded, or the bound by what errors of curves add up to, or no tire has
+ * such formulas. For scalar code; derivatives are those of
  * the formulas. */
 #define TIRE_TABLE_BOUND 1e-6
-enum { TIRE_TABLE_PLACES = 40000 };
+enum { TIRE_TABLE_PLACES = 40000, TIRE_TABLE_BOUND_PLACES = 1000 };
 const Formulation *formulation_tire_tables(Pool *pool, const Formulation *formulation);
 /* lanes.c: the number of lanes that a word names: 2, 4, 8 or 16; 0: any other word. */
 int lanes_of(const char *word);

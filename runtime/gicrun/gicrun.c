@@ -282,6 +282,8 @@ static Asked read_command_line(int count, char **word)
         usage_fail("gicrun", "--trace goes with --manoeuvre", NULL);
     if (study->compare && !asked.sheet && !study->manoeuvre && !asked.kinematics)
         usage_fail("gicrun", "--compare goes with --kc, --sheet or --manoeuvre", NULL);
+    if (study->compare && path_ends(word[first], ".scene"))
+        usage_fail("gicrun", "a scene to compare with stands after --compare, the model at the end, not", word[first]);
     if (asked.loads && asked.joints)
         usage_fail("gicrun", "one of --loads and --joints, please", NULL);
     if (asked.loads && study->travel > 0)

@@ -93,8 +93,8 @@ Roles drive_roles(Pool *pool, const Model *model, const Scene *scene, const Engi
     }
     if (driver && driver->steering >= 0 && isfinite(driver->limit)) {
         roles.steering = driver->steering;
-        roles.left = copysign(driver->limit, driver->per_angle);
-        roles.right = -roles.left;
+        roles.left = driver->middle + copysign(driver->limit, driver->per_angle);
+        roles.right = driver->middle - copysign(driver->limit, driver->per_angle);
     } else {
         find_steering(pool, model, scene, engine, &roles);
     }

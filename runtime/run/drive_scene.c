@@ -325,11 +325,11 @@ static void put_driver(Text *out, const Scene *scene)
     const struct {
         const char *name;
         double value;
-    } value[] = {{"gain", d->gain},           {"integral", d->integral},  {"straight", d->straight},
-                 {"full[0]", d->full[0]},     {"full[1]", d->full[1]},    {"per_angle", d->per_angle},
-                 {"wheelbase", d->wheelbase}, {"preview", d->preview},    {"shortest", d->shortest},
-                 {"limit", d->limit},         {"adapt", d->adapt},        {"period", d->period},
-                 {"reach", d->reach},         {"path.step", d->path.step}};
+    } value[] = {{"gain", d->gain},           {"integral", d->integral},   {"straight", d->straight},
+                 {"middle", d->middle},       {"full[0]", d->full[0]},     {"full[1]", d->full[1]},
+                 {"per_angle", d->per_angle}, {"wheelbase", d->wheelbase}, {"preview", d->preview},
+                 {"shortest", d->shortest},   {"limit", d->limit},         {"adapt", d->adapt},
+                 {"period", d->period},       {"reach", d->reach},         {"path.step", d->path.step}};
     text_print(out, "static const Driver driver = {.accelerator = %d, .brake = %d, .steering = %d, .driven = %d",
                d->accelerator, d->brake, d->steering, d->driven);
     for (size_t i = 0; i < sizeof value / sizeof *value; ++i) {

@@ -486,5 +486,11 @@ bool kc_joint_seen(const KcJoints *k, const KcCarried *carried, int j)
 
 const char *kc_joint_name(const KcJoints *k, const KcAxle *axle, int j)
 {
-    return j < k->joints ? k->name[j] : axle->steer >= 0 ? k->model->coordinate[axle->steer].name : "";
+    if (j < k->joints || axle->steer < 0)
+        return j < k->joints ? k->name[j] : "";
+    const char *name = k->model->coordinate[axle->steer].name;
+    for (int i = 0; i < k->joints; ++i)
+        if (!strcmp(k->name[i], name))
+            return pool_print(k->kc->pool, "%s (steering)", name);
+    return name;
 }

@@ -129,7 +129,9 @@ static void print_axle(Text *out, const KcCarrying *c, int a)
     for (int j = 0; j <= c->joints->joints; ++j) {
         if (!seen_of(c, a)[j])
             continue;
-        text_print(out, "\n  %-18s", kc_joint_name(c->joints, axle, j));
+        text_print(out, "\n  %-18s",
+                   pool_print(out->pool, "%s%s",
+                              j < c->joints->joints ? "" : "steering: ", kc_joint_name(c->joints, axle, j)));
         for (int i = 0; i < SHOWN; ++i)
             text_print(out, " %12s",
                        kc_shown(out->pool, number_of(carried_at(c, a, motion, row, shown[i].by, j)), shown[i].size));
@@ -302,7 +304,8 @@ static void draw_motion(Text *out, const KcCarrying *c, int a, const KcCurve *of
             for (int i = 0; i < DRAWN; ++i)
                 y[i * of->rows + r] = number_of(carried_at(c, a, of->motion, r, shown[i].by, j)) * shown[i].size;
         }
-        panel.title = kc_joint_name(c->joints, axle, j);
+        panel.title =
+            pool_print(c->pool, "%s%s", j < c->joints->joints ? "" : "steering: ", kc_joint_name(c->joints, axle, j));
         if (j == c->joints->joints && kc->model->coordinate[axle->steer].type == COORDINATE_ANGLE)
             panel.unit = "N m";
         panel_draw(out, &panel);
@@ -462,7 +465,9 @@ static void write_identity_of_both(void *context, Text *out, int indent)
 {
     const Both *both = context;
     (void)indent;
-    text_print(out, "<p>What joints and steering carry, by springs and by 1 kN or 100 N m a wheel: ");
+    text_print(out,
+               "<p>What joints and steering carry, by springs and by loads of each wheel (curves 1 kN or 100 N m, the "
+               "table 1 N or 1 N m): ");
     text_html(out, both->name[0]);
     text_print(out, " drawn through, ");
     text_html(out, both->name[1]);

@@ -312,11 +312,12 @@ const char *manoeuvre_driver_text(const Manoeuvre *m, const PathDriver *driver, 
     return pool_print(
         m->pool,
         "driver:\n  period: %g\n  reach: %g\n%s  steering:\n    path: %s\n    input: %s\n"
-        "    per_angle: %.17g\n    wheelbase: %.17g\n    limit: %.17g\n    preview: %.9g\n"
+        "    straight: %.17g\n    per_angle: %.17g\n    wheelbase: %.17g\n    limit: %.17g\n    preview: %.9g\n"
         "    shortest: %.9g\n    adapt: %g\n",
-        driver_period, driver_reach, pedals, path, car->model->input[car->steering].name, driver->gain / car->angle,
-        car->sheet.wheelbase, 0.999 * fmin(-car->range[0], car->range[1]) / fabs(car->angle), driver->preview,
-        driver->nearest > 0 ? driver->nearest : fmin(shortest, driver->preview * driver->speed), driver->adapt);
+        driver_period, driver_reach, pedals, path, car->model->input[car->steering].name, car->straight,
+        driver->gain / car->angle, car->sheet.wheelbase, 0.999 * fmin(-car->range[0], car->range[1]) / fabs(car->angle),
+        driver->preview, driver->nearest > 0 ? driver->nearest : fmin(shortest, driver->preview * driver->speed),
+        driver->adapt);
 }
 
 void manoeuvre_driver_rows(Manoeuvre *m, const PathDriver *driver, const char *prefix)

@@ -227,6 +227,23 @@ static void write_identity(void *context, Text *out, int indent)
     text_print(out, ". gicgen " GICGEN_VERSION "; models/MANOEUVRES.md defines the numbers.</p>\n");
 }
 
+/* Parameters of the same file that the second vehicle has from a scene. */
+static void write_parameters(const Page *page, Text *out, int vehicle)
+{
+    const Model *own = page->of[vehicle]->car->model, *first = page->of[0]->car->model;
+    bool any = false;
+    if (!vehicle || strcmp(own->source->path, first->source->path) != 0)
+        return;
+    for (int i = 0; i < own->parameters && i < first->parameters; ++i)
+        if (own->parameter[i].tunable && own->parameter[i].value != first->parameter[i].value) {
+            text_print(out, "%s", any ? ", " : "parameters: {");
+            text_html(out, own->parameter[i].name);
+            text_print(out, ": %.17g", own->parameter[i].value);
+            any = true;
+        }
+    text_print(out, "%s", any ? "}\n" : "");
+}
+
 static void write_scenes(void *context, Text *out, int indent)
 {
     const Page *page = context;
@@ -239,6 +256,7 @@ static void write_scenes(void *context, Text *out, int indent)
             text_html(out, page->of[v]->trial[t]->name);
             text_print(out, "</summary><pre>");
             text_html(out, page->of[v]->trial[t]->scene);
+            write_parameters(page, out, v);
             text_print(out, "</pre></details>\n");
         }
 }

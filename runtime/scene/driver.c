@@ -103,7 +103,7 @@ static void control_path(Driver *driver, double time, const Sight *sight, double
     driver->steered = steering / driver->per_angle / driver->wheelbase;
     if (speed > slowest && steering == wanted)
         driver->curvature_sum += driver->adapt * (curvature - sight->yaw_rate / speed) * driver->period;
-    movement_turn(&driver->wheel, time, steering, driver->reach);
+    movement_turn(&driver->wheel, time, driver->middle + steering, driver->reach);
 }
 
 Sight sight_of(const double *state, int half)

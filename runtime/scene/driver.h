@@ -31,10 +31,11 @@ typedef struct Driver {
     bool driven;              /* it is a driven coordinate: rate and acceleration follow */
     Path path;                /* m, world */
     double straight;          /* steering value at the start */
+    double middle;            /* steering value straight ahead */
     double per_angle;         /* of the steering over the angle of the front wheels, 1/rad */
     double wheelbase;         /* m */
     double preview, shortest; /* distance of the preview point: s, and least m */
-    double limit, adapt;      /* largest steering value; 1/s, correction of the curvature driven */
+    double limit, adapt;      /* largest steering value off the middle; 1/s, correction of the curvature driven */
     double period, reach;     /* s between looks; s that a movement takes */
     /* during the run */
     int64_t looks; /* number of looks so far */

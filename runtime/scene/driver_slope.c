@@ -133,7 +133,7 @@ static void look_at_path(const Driver *driver, const Driver *after, const Dual *
     const double bent = driver->wheelbase * curvature.value;
     const Dual angle = of(atan(bent), driver->wheelbase / (1 + bent * bent), &curvature, 0, &curvature);
     const Dual wanted = plus(constant(0), driver->per_angle, plus(angle, driver->wheelbase, sum));
-    result[STEERING] = limited(wanted, -driver->limit, driver->limit);
+    result[STEERING] = plus(constant(driver->middle), 1, limited(wanted, -driver->limit, driver->limit));
     const bool adapts = after->curvature_sum != driver->curvature_sum;
     result[CURVATURE_SUM] =
         adapts ? plus(sum, driver->adapt * driver->period, plus(curvature, -1, over(seen[YAW_RATE], speed))) : sum;

@@ -191,7 +191,7 @@ static void read_speed(Pool *pool, const Model *model, const Item *item, Driver 
 static void read_steering(Pool *pool, const Model *model, const Item *item, Driver *driver)
 {
     CHECK_KEYS(item, "the driver's steering", "path", "input", "wheelbase", "per_angle", "preview", "shortest", "limit",
-               "adapt");
+               "adapt", "straight");
     read_path(pool, scene_need(item, "path", "the driver's steering"), &driver->path);
     driver->steering = find_input(pool, model, item, "input", "steering");
     driver->driven = scene_driven_by(model, driver->steering);
@@ -206,6 +206,8 @@ static void read_steering(Pool *pool, const Model *model, const Item *item, Driv
     driver->shortest = positive(item, "shortest", 4);
     driver->limit = positive(item, "limit", INFINITY);
     driver->adapt = not_negative(item, "adapt", 0.5);
+    const Item *straight = doc_find(item, "straight");
+    driver->middle = straight ? doc_number(straight, "straight") : 0;
 }
 
 Driver *driver_read(Pool *pool, const Item *item, const Model *model, double step)

@@ -5,6 +5,7 @@
 #include "base/version.h"
 #include "emit/emit.h"
 #include "run/kc.h"
+#include "run/manoeuvre.h"
 #include "run/panel.h"
 #include "sweep/study.h"
 
@@ -43,6 +44,16 @@ static void legend(const StudySweep *sweep, Text *out, int curve, const char *la
 
 /* ---- numbers over what is varied ------------------------------------------------------------------------ */
 
+/* The title of a number; where another one has the same, after the section that it stands in. */
+static const char *title_of(const StudySweep *sweep, int column)
+{
+    const SheetRow *own = &sweep->column[column];
+    for (int c = 0; c < sweep->columns; ++c)
+        if (c != column && !strcmp(sweep->column[c].title, own->title) && own->section)
+            return pool_print(sweep->pool, "%s: %s", own->section, own->title);
+    return own->title;
+}
+
 static void draw_number(const StudySweep *sweep, Text *out, int c, const double *x, double *y)
 {
     const int last = sweep->plan.varied - 1, beside = vehicles(sweep);
@@ -54,7 +65,7 @@ static void draw_number(const StudySweep *sweep, Text *out, int c, const double 
             const int64_t run = chosen(sweep, sets, k / beside) * rows + r;
             y[k * rows + r] = sweep->value[k % beside][run * sweep->columns + c] * column->scale;
         }
-    panel_draw(out, &(Panel){.title = column->title,
+    panel_draw(out, &(Panel){.title = title_of(sweep, c),
                              .unit = column->shown,
                              .below = pool_print(sweep->pool, "%s, %s", sweep->plan.vary[last].name, sweep->unit[last]),
                              .rows = (int)rows,
@@ -230,6 +241,19 @@ static void write_table(void *context, Text *out, int indent)
     }
 }
 
+static void write_manoeuvre(const StudySweep *sweep, Text *out)
+{
+    const Request *request = sweep->request;
+    for (const ManoeuvreKind *kind = manoeuvre_kind; request->manoeuvre && kind->name; ++kind)
+        if (!strcmp(kind->name, request->manoeuvre))
+            text_print(out, "%s", kind->title);
+    for (int k = 0; request->manoeuvre && k < request->keys; ++k) {
+        text_print(out, "%s ", k ? "," : ":");
+        text_html(out, request->key[k]);
+    }
+    text_print(out, "%s", request->manoeuvre ? ". " : "");
+}
+
 static void write_identity(void *context, Text *out, int indent)
 {
     const StudySweep *sweep = context;
@@ -239,7 +263,8 @@ static void write_identity(void *context, Text *out, int indent)
     for (int c = 0; c < sweep->columns; ++c)
         same += !study_changes(sweep, c);
     text_print(out, "<p>");
-    text_html(out, model->description ? model->description : model->name);
+    write_manoeuvre(sweep, out);
+    text_html(out, model->description && *model->description ? model->description : model->name);
     text_print(out, ". gicgen " GICGEN_VERSION ". %lld runs; %d other numbers do not change.</p>\n",
                (long long)sweep->plan.runs, same);
     if (sweep->beside) {

@@ -85,9 +85,15 @@ refused 1 "no wheel of 'hmmwv' has a tire" --tire-tables "$models/hmmwv.veh"
 refused 2 "tire-tables is for the code of one vehicle" --tire-tables --lanes 4 "$models/hmmwv_tires.veh"
 refused 2 "tire-tables is for the code of one vehicle" --tire-tables --batch 4 "$models/hmmwv_tires.veh"
 refused 2 "tire-tables is for the code of one vehicle" --tire-tables --fmu 2 "$models/hmmwv_tires.veh"
+# a peak of combined slip at kappa = -RHY1 so narrow that places miss it: errors of tables divided by its small value at kappa = 0
+cp truck.tir truck_kept.tir
+sed 's/^RBY1 = .*/RBY1 = 10000/; s/^RBY2 = .*/RBY2 = 0/; s/^RCY1 = .*/RCY1 = 1/; s/^REY1 = .*/REY1 = 0/; s/^KPUMIN = .*/KPUMIN = -100/; s/^KPUMAX = .*/KPUMAX = 100/' \
+    truck_kept.tir >truck.tir
+refused 1 "errors of tables for tire 'truck' may add up to [1-9].[0-9]e-0[1-5] of its load" --tire-tables rig.veh
+mv truck_kept.tir truck.tir
 # curvature factors that multiply what a table is off by
 sed 's/^PEX1 = .*/PEX1 = -1e4/' truck.tir >truck_bent.tir && mv truck_bent.tir truck.tir
-refused 1 "tire 'truck' by table is off by [1-9].[0-9]e-0[4-7] of its load" --tire-tables rig.veh
+refused 1 "errors of tables for tire 'truck' may add up to [1-9].[0-9]e-0[3-6] of its load" --tire-tables rig.veh
 
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]
