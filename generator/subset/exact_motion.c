@@ -147,6 +147,20 @@ Exact *exact_new(Work *w, Formula *const *made, const Formula *own, const Sampli
     return exact;
 }
 
+bool exact_is_tuned(const Exact *exact)
+{
+    for (int i = 0; i < exact->subsets; ++i) {
+        const Solved *own = &exact->solved[exact->order[i]];
+        for (Ex e = 0; e < (Ex)own->formula->dag->nodes; ++e) {
+            const Node *node = &own->formula->dag->node[e];
+            if ((own->motion_needed[e] || (own->pose_needed && own->pose_needed[e])) && node->op == OP_INPUT &&
+                node->element->array == ARRAY_d)
+                return true;
+        }
+    }
+    return false;
+}
+
 void exact_reset(Exact *exact)
 {
     const Work *w = exact->w;

@@ -11,6 +11,8 @@ typedef struct Exact Exact;
 /* For the subsets of one class, whose formula is `own`, and those that they refer to, of which `made` [classes] has the
  * formulas. */
 Exact *exact_new(Work *w, Formula *const *made, const Formula *own, const Sampling *sampling);
+/* True: a tunable parameter moves one of these motions. */
+bool exact_is_tuned(const Exact *exact);
 /* Begin again at the design. */
 void exact_reset(Exact *exact);
 /* Solve a subset, and before it those that it refers to, with the coordinate at x and at unit rate, the base at rest,

@@ -420,17 +420,6 @@ static Polynomial *make_blocks(Fit *fit, double bound, double worst)
     return found;
 }
 
-/* The first number of the poses' equations that a tunable parameter moves. */
-static bool is_tuned(const Work *w, const Formula *formula)
-{
-    const int roots = 7 * w->first->bodies;
-    const bool *needed = dag_needed(w->dag, formula->implicit->found, roots);
-    bool any = false;
-    for (Ex e = 0; e < (Ex)w->dag->nodes; ++e)
-        any = any || (needed[e] && w->dag->node[e].op == OP_INPUT && w->dag->node[e].element->array == ARRAY_d);
-    return any;
-}
-
 void subset_polynomial(Work *w, Formula *formula, Formula *const *made, const Sampling *sampling, double bound)
 {
     const int members = w->class->members;
@@ -447,9 +436,11 @@ void subset_polynomial(Work *w, Formula *formula, Formula *const *made, const Sa
         return;
     }
     const Coordinate *c = &w->model->coordinate[w->first->dep[0]];
-    if (is_tuned(w, formula))
+    Exact *exact = exact_new(w, made, formula, sampling);
+    if (exact_is_tuned(exact))
         diag_fail(c->at,
-                  "take `tunable` from the parameters that move its points, or leave out `--recovery polynomial`",
+                  "take `tunable` from the parameters that move its points or its design, or leave out "
+                  "`--recovery polynomial`",
                   "the geometry of %s follows tunable parameters: no polynomial of '%s' fits all their values",
                   bodies_text(w, 0), c->name);
     Fit fit = {.w = w, .formula = formula, .numbers = BODY_NUMBERS * w->first->bodies};
@@ -460,7 +451,6 @@ void subset_polynomial(Work *w, Formula *formula, Formula *const *made, const Sa
     fit.point = pool_alloc(w->pool, all * POINTS * numbers * sizeof *fit.point);
     fit.degree = pool_alloc(w->pool, numbers * sizeof *fit.degree);
     fit.power = pool_alloc(w->pool, numbers * all * (DEGREE_MOST + 1) * sizeof *fit.power);
-    Exact *exact = exact_new(w, made, formula, sampling);
     for (int m = 0; m < members; ++m) {
         const Coordinate *own = &w->model->coordinate[subset_member(w, m)->dep[0]];
         fit.low[m] = own->range[0];
@@ -469,7 +459,9 @@ void subset_polynomial(Work *w, Formula *formula, Formula *const *made, const Sa
     }
     set_scales(&fit);
     if (!fit_numbers(&fit, bound)) {
-        formula->exact_because = "its range takes more than degree 40";
+        formula->exact_because = pool_print(
+            w->pool, "the range [%g, %g] of '%s' takes polynomials of a degree above %d; a shorter one may not",
+            fit.low[0], fit.high[0], c->name, DEGREE_MOST);
         return;
     }
     const double worst = verify(&fit);
