@@ -119,7 +119,10 @@ Sheet kc_loads_sheet(Pool *pool, const Model *model, const Kc *kc)
             const char *by = pool_print(pool, "%s%s", kc_load_name[k / 2], k % 2 ? ".opposed" : "");
             const char *unit = unit_of((KcLoad)(k / 2)), *section = k ? NULL : pool_print(pool, "Axle: %s", axle->name);
             KcGive give[KC_WHEELS];
-            if (kc_compliance(kc, axle, (KcLoad)(k / 2), k % 2, give))
+            const char *why = kc_compliance(kc, axle, (KcLoad)(k / 2), k % 2, give);
+            if (why && !k)
+                sheet_miss(&sheet, pool_print(pool, "compliance of axle %s: %s", axle->name, why));
+            if (why)
                 continue;
             for (int i = 0; i < axle->wheels; ++i) {
                 const double number[COLUMNS] = {give[i].toe, give[i].camber, give[i].contact[0], give[i].contact[1],

@@ -269,10 +269,10 @@ static void report_loads(Pool *pool, const Model *model, const Scene *scene, con
         sheet_csv(&sheet, request->results);
     else if (request->results)
         kc_loads_csv(pool, kc, request->results);
-    if (request->results || request->report)
-        return;
-    if (request->compare) {
+    if (request->compare && !request->results && !request->report)
         sheet_print(&sheet, ": compliance, models/KC.md defines it");
+    if (request->compare || request->results || request->report) {
+        sheet_notes(&sheet, request);
         return;
     }
     Text table = {.pool = pool}, *out = &table;

@@ -220,7 +220,7 @@ static void write_identity(void *context, Text *out, int indent)
         text_html(out, page->name[1]);
         text_print(out, " (dashed); what differs is marked");
     } else
-        text_html(out, model->description ? model->description : model->name);
+        text_html(out, model->description && *model->description ? model->description : model->name);
     for (int k = 0; k < MANOEUVRE_KEYS && page->kind->key[k].name; ++k)
         text_print(out, "%s %s %.6g %s", k ? "," : ":", page->kind->key[k].name, page->of[0]->value[k],
                    page->kind->key[k].unit);

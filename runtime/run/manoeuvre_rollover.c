@@ -101,7 +101,8 @@ static Outcome drive_one(Manoeuvre *m, double speed, double sign, double angle, 
     return BREAKS_OFF;
 }
 
-static void add_side(Manoeuvre *m, double sign, double angle, bool hooks)
+/* True: there is a number. False: a run broke off before, a note tells. */
+static bool add_side(Manoeuvre *m, double sign, double angle, bool hooks)
 {
     Sheet *s = m->result;
     const double from = m->value[1], most = m->value[0];
@@ -139,7 +140,7 @@ static void add_side(Manoeuvre *m, double sign, double angle, bool hooks)
         section = NULL;
     }
     if (!last)
-        return;
+        return !isnan(fails);
     const double *roll[2] = {last->row[trial_peak(last, TRIAL_ROLL, begin, INFINITY, 1)],
                              last->row[trial_peak(last, TRIAL_ROLL, begin, INFINITY, -1)]};
     const double *ay[2] = {last->row[trial_peak(last, TRIAL_AY, begin, INFINITY, 1)],
@@ -148,6 +149,7 @@ static void add_side(Manoeuvre *m, double sign, double angle, bool hooks)
               fmax(roll[0][TRIAL_ROLL], -roll[1][TRIAL_ROLL]));
     sheet_add(s, NULL, pool_print(m->pool, "%s.ay", side), "Its largest lateral acceleration", "m/s^2",
               fmax(ay[0][TRIAL_AY], -ay[1][TRIAL_AY]));
+    return true;
 }
 
 static void drive_sides(Manoeuvre *m, bool hooks)
@@ -160,8 +162,10 @@ static void drive_sides(Manoeuvre *m, bool hooks)
     if (angle < m->value[2] * A)
         sheet_note(m->result, pool_print(m->pool, "the steering ends at %.3g A", angle / A));
     sheet_add(m->result, NULL, "steer_angle", "Steer angle that is driven", "rad", angle);
-    add_side(m, 1, angle, hooks);
-    add_side(m, -1, angle, hooks);
+    const bool left = add_side(m, 1, angle, hooks), right = add_side(m, -1, angle, hooks);
+    if (!left && !right)
+        car_refuse(car, "let stops of its suspension act before that, or ask for less: from, angle",
+                   m->result->notes ? m->result->note[m->result->notes - 1] : "no run was evaluated");
     manoeuvre_draw(m, sizeof over / sizeof *over, over);
 }
 

@@ -194,6 +194,8 @@ run --kc --loads --axle rear --compare "$models/hmmwv.veh" "$models/hatchback.ve
 check 'and their numbers' sh -c "awk '/  lateral: toe, / { print \$(NF - 2 + (\$NF != \"*\")); exit }' '$work/out' | grep -qxF \"\$(sed -n 's/^<tr[^>]*><td>lateral<.td><td>[^<]*<.td><td class=.n.>\\([^<]*\\)<br>.*/\\1/p' '$work/loads.html' | head -1)\""
 run --kc --loads --axle rear "$models/hatchback.veh"
 check 'an aligning torque of 100 N m in both' sh -c "toe=\$(awk '\$1 == \"aligning\" && \$2 != \"opposed\" { print \$3; exit }' '$work/out') && grep -qF \"<td>aligning</td><td>rear_l</td><td class=\\\"n\\\">\$toe<br>\" '$work/loads.html'"
+run --kc --loads "$models/motorcycle.veh" -o "$work/loads.csv"
+check 'an axle without compliance is told beside CSV' says 'compliance of axle front: nothing holds a coordinate that moves its wheels'
 # one axle is the foremost and the rearmost one, and stands beside that of a vehicle
 sed '/^  r_/d; /rear/d' "$root/tests/data/manoeuvre/bar.veh" >"$work/single.veh"
 run --kc --axle front --compare "$work/single.veh" "$root/tests/data/manoeuvre/bar.veh"

@@ -190,8 +190,9 @@ check 'below it' exits 0
 sed 's/bodies: \[rack, f_hub_l\]/bodies: [chassis, f_hub_l]/; s/\(r_tie_l: .*\)bodies: \[chassis,/\1bodies: [rack,/; s/com: \[1.15,0,0.2\]/com: [-1.35,0,0.2]/' \
     "$root/tests/data/manoeuvre/bar.veh" >"$work/behind.veh"
 run --manoeuvre j-turn "$work/behind.veh" -o "$work/j.csv"
-check 'a run that breaks off' says 'left .*: the run ends at .* singular .*; so it is not known at which speed it lifts a side'
-check 'is no lifted side' sh -c "! grep -q lifts '$work/j.csv'"
+check 'runs that break off' exits 1
+check 'are told' says 'the run ends at .* singular .*; so it is not known at which speed it lifts a side'
+check 'and there is no table' [ ! -e "$work/j.csv" ]
 
 # the pedal begins to move at the speed that was asked for, though a vehicle without drive has coasted up to there
 run --manoeuvre braking "$models/hmmwv_vehicle.veh" speed=16 -q -o "$work/a.csv"
