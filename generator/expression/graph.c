@@ -622,7 +622,7 @@ void dag_evaluate(Dag *dag, int first, int count)
         if (node->level == LEVEL_VARIABLE && node->op != OP_INPUT && node->op != OP_ROAD_PART && !is_change(node->op) &&
             (node->op != OP_TABLE || dag->tables))
             node_evaluate(dag, node, dag->value + (size_t)e * (size_t)dag->samples, first, count);
-        for (int s = first; dag->moved == e && s < first + count; ++s)
+        for (int s = first; dag->moved && dag->moved == e && s < first + count; ++s)
             dag->value[(size_t)e * (size_t)dag->samples + (size_t)s] += dag->moves;
     }
 }

@@ -55,6 +55,8 @@ static void set_place(const Probe *probe, int number)
                                   [VARY_FRICTION] = number % 4 < 2 ? 1 : 0.1 + 1.1 * u[VARY_FRICTION]};
     for (int i = 0; i < VARIED; ++i)
         ex_set_sample(probe->dag, probe->input[i], 0, value[i]);
+    if (number % 8 == 3) /* and loads down to nothing, as where a wheel lifts */
+        ex_set_sample(probe->dag, probe->input[VARY_LOAD], 0, nominal * exp(-20 * u[VARY_LOAD]));
     /* weights of combined slip are largest at these slips, with stiff data in a narrow peak */
     const double off = side[VARY_CAMBER] * exp(-14 * u[VARY_FRICTION]);
     const double peak[] = {-pac[PAC_RHY1] - pac[PAC_RHY2] * (value[VARY_LOAD] / nominal - 1), -pac[PAC_RHX1]};
