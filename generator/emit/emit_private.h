@@ -125,6 +125,9 @@ void write_initial(void *context, Text *out, int indent);
 /* curves.c: insertion point of curves.c.in, context: the Generation; lines about tires by table for the banner. */
 extern const Insertions curve_points;
 void write_curve_error(const Generation *g, Text *out);
+/* polynomials.c: lines of the banner: which subsets have polynomials, with bound, degree and largest error found, and
+ * why others have none; nothing where no subset has any. */
+void write_polynomials(const Generation *g, Text *out);
 
 /* lanes.c: insertion points of templates of lanes. */
 extern const Insertions lane_class_points, lane_width_points, lane_fold_points;

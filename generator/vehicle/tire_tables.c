@@ -83,8 +83,9 @@ static void forces(const Block *block, double *out)
         out[i] = ex_value(block->dag, block->store[i].value, 0);
 }
 
-/* What the errors of all curves add up to at a place, each as large as it is anywhere: a narrow peak that no place
- * meets is no better, for the forces change with a curve's value there by as much as elsewhere. */
+/* What the errors of all curves add up to at a place, each as large as it is anywhere. Where a narrow peak is missed,
+ * forces still change with the curve's value as much as on it, so that this is seen from beside it. Not a proof: forces
+ * with a pole have places at which nothing is seen. */
 static double errors_add_up(const WheelClass *class, const Tire *tire, double load)
 {
     Dag *dag = class->by_table.dag;
