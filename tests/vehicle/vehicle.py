@@ -16,7 +16,8 @@ def check(name, good, why=''):
 
 
 def near(name, a, b, tolerance):
-    check(name, abs(a - b) <= tolerance, '%.6g instead of %.6g, %.2g allowed' % (a, b, tolerance))
+    """a within tolerance of b; an arm that is infinite (parallel lines) is infinite in both."""
+    check(name, a == b if math.isinf(b) else abs(a - b) <= tolerance, '%.6g instead of %.6g, %.2g allowed' % (a, b, tolerance))
 
 
 def cross(a, b):
