@@ -113,6 +113,14 @@ static KcCarrying open_all(Pool *pool, const Model *model, const Scene *scene, c
 
 /* ---- a table -------------------------------------------------------------------------------------------- */
 
+/* What a reader sees of joint j: its name; of the steering, which comes last, with the word. */
+static const char *title_of(const KcCarrying *c, const KcAxle *axle, int j)
+{
+    if (j < c->joints->joints)
+        return kc_joint_name(c->joints, axle, j);
+    return pool_print(c->pool, "steering: %s", c->study->kc->model->coordinate[axle->steer].name);
+}
+
 static void print_axle(Text *out, const KcCarrying *c, int a)
 {
     const KcAxle *axle = &c->study->kc->axle[a];
@@ -129,9 +137,7 @@ static void print_axle(Text *out, const KcCarrying *c, int a)
     for (int j = 0; j <= c->joints->joints; ++j) {
         if (!seen_of(c, a)[j])
             continue;
-        text_print(out, "\n  %-18s",
-                   pool_print(out->pool, "%s%s",
-                              j < c->joints->joints ? "" : "steering: ", kc_joint_name(c->joints, axle, j)));
+        text_print(out, "\n  %-18s", title_of(c, axle, j));
         for (int i = 0; i < SHOWN; ++i)
             text_print(out, " %12s",
                        kc_shown(out->pool, number_of(carried_at(c, a, motion, row, shown[i].by, j)), shown[i].size));
@@ -304,8 +310,7 @@ static void draw_motion(Text *out, const KcCarrying *c, int a, const KcCurve *of
             for (int i = 0; i < DRAWN; ++i)
                 y[i * of->rows + r] = number_of(carried_at(c, a, of->motion, r, shown[i].by, j)) * shown[i].size;
         }
-        panel.title =
-            pool_print(c->pool, "%s%s", j < c->joints->joints ? "" : "steering: ", kc_joint_name(c->joints, axle, j));
+        panel.title = title_of(c, axle, j);
         if (j == c->joints->joints && kc->model->coordinate[axle->steer].type == COORDINATE_ANGLE)
             panel.unit = "N m";
         panel_draw(out, &panel);

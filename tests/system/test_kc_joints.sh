@@ -17,6 +17,16 @@ run --kc --joints --axle rear "$models/trailing_arm.veh"
 check 'a table' exits 0
 check 'the hinge of a trailing arm takes what its pad gives' prints 'arm_r_l  *[0-9.]*  *1000.0000  *1000.0000'
 check 'what stops it is told' prints 'rear, steer: not possible'
+# a joint that has the name of the steering is another row, and another diagram
+mkdir "$work/m" && cp -r "$models/." "$work/m" && sed 's/^  column: /  steering: /' "$models/formula_student.veh" >"$work/m/named.veh"
+for of in formula_student named; do
+    run --kc --joints --axle front "$work/m/$of.veh" --report "$work/$of.html" -o "$work/$of.csv"
+    check "$of: exits" exits 0
+done
+check 'the joint has a row' sh -c "run() { '$gicrun' --kc --joints --axle front '$work/m/named.veh'; }; run | grep -qE '^  steering  ' && run | grep -qE '^  steering: steering  '"
+check 'each a diagram' sh -c "[ \$(grep -cE '<figcaption>(steering|steering: steering), N' '$work/named.html') -eq 6 ]"
+same_numbers() { sed 's/"//g' "$work/$1.csv" | sed 1d | cut -d, -f2-; }
+check 'with the same numbers' [ "$(same_numbers formula_student)" = "$(same_numbers named)" ]
 run --kc --joints "$models/motorcycle.veh"
 check 'one wheel behind the other' exits 0
 run --kc --joints "$models/semitrailer.veh" --axle axle_3 -q -o "$work/truck.csv"

@@ -84,6 +84,9 @@ four -0.5 3 2 1 2 1 2 1 | sed '/^parameters/d' >"$work/branch.veh"
 refused "a change point within the range" 1 "branch.veh:.*error: .*within its range \[-0.5, 3\]" --recovery polynomial "$work/branch.veh"
 four -0.5 0.5 2 1 2 1 2 1 | sed 's/point: \[2, 0, 1\], axis/point: [along, 0, 1], axis/' >"$work/tuned.veh"
 refused "tunable geometry" 1 "tuned.veh:[0-9]*:[0-9]*: error: .*tunable" --recovery polynomial "$work/tuned.veh"
+four -0.5 0.5 2 1 2 1 2 1 | sed 's/^parameters:.*/parameters: {load: {value: 1, tunable: true}}/; s/coupler: {mass: 1,/coupler: {mass: "load",/' >"$work/loaded.veh"
+"$gicgen" --recovery polynomial "$work/loaded.veh" -o "$work/loaded.c" 2>"$work/err" && grep -q polynomial "$work/loaded.c"
+verdict $? "a tunable mass is no geometry"
 refused "closed forms" 1 "hmmwv.veh: error: no subset" --recovery polynomial "$root/models/hmmwv.veh"
 for option in "--lanes 4" "--batch 8" --derivatives --implicit "--fmu 2"; do
     # shellcheck disable=SC2086

@@ -35,6 +35,12 @@ check 'a run that fails' exits 1
 check 'is told' says '1 of 2 runs has no results, the first with ay = 14: '
 check 'and has empty cells' grep -qE '^1,14(,)+$' "$work/some.csv"
 check 'the other one is there' grep -qE '^0,2,[0-9]' "$work/some.csv"
+run --manoeuvre step-steer "$linear" speed=16 --vary ay=2:4:3 -q --report "$work/page.html" -o "$work/three.csv"
+check 'a manoeuvre over what is varied' exits 0
+check 'the page names manoeuvre and keys' grep -q '^<p>Step of the steering: speed=16\. ' "$work/page.html"
+titles() { sed '/<h2>left/,$d' "$work/page.html" | grep -o '<figcaption>[^<]*'; }
+check 'numbers of left and right have diagrams' [ "$(titles | wc -l)" -gt 3 ]
+check 'no two of them one title' [ -z "$(titles | sort | uniq -d)" ]
 run --sheet "$models/formula_student.veh" --vary bar_front=-2000:-50:2 --vary bar_rear=-70:70:2 -q
 check 'no sheet at all' exits 1
 run --kc "$models/formula_student.veh" --vary bar_front=-50:50:3 --report "$work/page.html"
