@@ -64,6 +64,7 @@ typedef struct KcAxle {
     double *preload;                       /* [wheels + followers] forces of rubber as set up; NULL: nothing follows */
     const char *unit; /* coordinate that turns the unit it belongs to, which is not that of the base; NULL: it is */
     bool rigid; /* no coordinate moves its wheels up and down, which is a refusal; it may be steered all the same */
+    const char *loose;     /* coordinate that moves its wheels up and down and that nothing holds; NULL: none */
     const char *refusal;   /* why no wheel of it can be moved; NULL: they can */
     const char *unsteered; /* why it is not steered; NULL: it is */
 } KcAxle;
@@ -82,6 +83,7 @@ typedef struct Kc {
     double *initial;       /* [coordinates] */
     double wheelbase;      /* kc_wheelbase() at set-up; 0: there is one axle */
     const char *units;     /* what is to be said of axles of other units; NULL: there are none */
+    double middle;         /* y of the drawing, m: midway between the wheels furthest to the left and to the right */
     double height;         /* of the centre of mass above the mean of all contacts, m; 0: the base is ground */
     double fixed_x;        /* of the mean contact of axles without steering; used if `turns` */
     bool turns;            /* the base's unit has an axle with steering, and one without */
@@ -92,6 +94,11 @@ typedef struct Kc {
  * scene: its parameters are those of set-up; NULL: the model's. Ends in diag_fail where the model has no wheels, or no
  * such axle. */
 Kc *kc_open(Pool *pool, const Model *model, const Scene *scene, Solve solve, const char *axle);
+
+/* The middle between the wheels furthest to the left and to the right, y of the drawing, m. */
+double kc_middle_of(const Model *model);
+/* 1: a y of the drawing, m, is to the left of that middle, -1: to the right, 0: within 1 mm of it. */
+int kc_side(const Kc *kc, double y);
 
 /* Add a hidden output to a model that is to be measured; returns the place of its first component among all. */
 int kc_watch(Pool *pool, Model *model, Output output);

@@ -148,12 +148,33 @@ static int by_x(const void *a, const void *b)
     return p->index - q->index;
 }
 
+double kc_middle_of(const Model *model)
+{
+    double low = INFINITY, high = -INFINITY;
+    for (int w = 0; w < model->wheels; ++w) {
+        const Body *body = &model->body[model->wheel[w].body];
+        double A[9], at[3];
+        mat_from_euler(body->euler, A);
+        apply3(A, model->wheel[w].center, at);
+        low = fmin(low, at[1] + body->position[1]);
+        high = fmax(high, at[1] + body->position[1]);
+    }
+    return (low + high) / 2;
+}
+
+int kc_side(const Kc *kc, double y)
+{
+    static const double midway = 1e-3; /* m */
+    return fabs(y - kc->middle) < midway ? 0 : y > kc->middle ? 1 : -1;
+}
+
 /* Do two wheels turn about one line on one body, with one radius, on one side? */
-static bool is_twin(const Model *model, const Placed *a, const Placed *b)
+static bool is_twin(const Kc *kc, const Model *model, const Placed *a, const Placed *b)
 {
     const Wheel *one = &model->wheel[a->index], *other = &model->wheel[b->index];
     double first[3], second[3], line[3], across[3];
-    if (one->body != other->body || (a->y < 0) != (b->y < 0) || radius_of(model, one) != radius_of(model, other))
+    if (one->body != other->body || kc_side(kc, a->y) != kc_side(kc, b->y) ||
+        radius_of(model, one) != radius_of(model, other))
         return false;
     axis_of(model, one, first);
     axis_of(model, other, second);
@@ -174,7 +195,7 @@ static int join_twins(Kc *kc, const Model *model, Placed *placed)
             continue;
         *joined = *placed[i].wheel;
         for (int j = i + 1; j < model->wheels; ++j) {
-            if (!placed[j].wheel || placed[i].parts == KC_WHEELS || !is_twin(model, &placed[i], &placed[j]))
+            if (!placed[j].wheel || placed[i].parts == KC_WHEELS || !is_twin(kc, model, &placed[i], &placed[j]))
                 continue;
             add3(joined->center, placed[j].wheel->center, joined->center);
             joined->name = pool_print(kc->pool, "%s+%s", joined->name, placed[j].wheel->name);
@@ -202,11 +223,12 @@ static void find_axles(Kc *kc, Model *model)
             (Placed){at[0] + body->position[0], at[1] + body->position[1], i, &model->wheel[i], 1, {&model->wheel[i]}};
     }
     qsort(placed, (size_t)model->wheels, sizeof *placed, by_x);
+    kc->middle = kc_middle_of(model);
     double first = 0;
     const int wheels = join_twins(kc, model, placed);
     for (int i = 0; i < wheels; ++i) {
         KcWheel wheel = watch_wheel(kc, model, placed[i].wheel);
-        wheel.side = placed[i].y < 0 ? -1 : 1;
+        wheel.side = kc_side(kc, placed[i].y) < 0 ? -1 : 1;
         wheel.parts = placed[i].parts;
         memcpy(wheel.part, placed[i].part, sizeof wheel.part);
         KcAxle *axle = kc->axles ? &kc->axle[kc->axles - 1] : NULL;
@@ -369,12 +391,25 @@ static int find_steer(const Kc *kc, const KcAxle *axle, const Effects *effects)
     return best;
 }
 
+/* A coordinate that moves the wheels of an axle up and down, which no force element holds: it stays where it is. */
+static void find_loose(const Kc *kc, KcAxle *axle, int rank, const Effects *effects, const bool *sprung)
+{
+    const int all = kc->model->coordinates;
+    for (int c = 0; c < all && rank && !axle->loose; ++c)
+        for (int i = 0; i < axle->wheels; ++i)
+            if (fabs(effects->lift[i * all + c]) > nothing * axle->wheel[0].radius && !sprung[c] && c != axle->steer &&
+                !kc->model->coordinate[c].driven && !kc_is_mount(kc->model, c) && !is_unit(kc, axle, c) &&
+                !is_travel(axle, rank, c))
+                axle->loose = kc->model->coordinate[c].name;
+}
+
 static void classify(const Kc *kc, KcAxle *axle)
 {
     const int n = axle->wheels, all = kc->model->coordinates;
     const size_t room = ((size_t)n * (size_t)all + 1) * sizeof(double);
     Effects effects = {pool_alloc(kc->pool, room), pool_alloc(kc->pool, room), pool_alloc(kc->pool, 3 * room)};
     double *left = pool_alloc(kc->pool, room);
+    bool *sprung = pool_alloc(kc->pool, (size_t)all + 1);
     for (int c = 0; c < all; ++c) {
         KcAxle one = {.steer = c};
         KcLook *look = kc_look_new(kc, &one);
@@ -382,11 +417,12 @@ static void classify(const Kc *kc, KcAxle *axle)
         if (status != GIC_OK)
             diag_fail((Place){kc->model->source, 0, 0}, NULL, "the model can't be evaluated as it is set up: %s",
                       kc_status(kc, status));
+        sprung[c] = is_sprung(kc, c, look->slope);
         for (int i = 0; i < n; ++i) {
             const double scale = width(&kc->model->coordinate[c]);
             effects.lift[i * all + c] = scale * look->slope[axle->wheel[i].centre + 2];
             effects.aside[i * all + c] = scale * look->slope[axle->wheel[i].velocity + 1];
-            left[i * all + c] = effects.lift[i * all + c] * (is_sprung(kc, c, look->slope) ? 1 : unsprung);
+            left[i * all + c] = effects.lift[i * all + c] * (sprung[c] ? 1 : unsprung);
             add_scaled3(scale, look->slope + axle->wheel[i].turn, effects.turn[i * all + c]);
         }
     }
@@ -401,6 +437,7 @@ static void classify(const Kc *kc, KcAxle *axle)
             kc->pool, "its %d wheels can't travel each by itself: coordinates move them in %d ways", n, rank);
     if (rank == 0 || rank == n)
         axle->steer = find_steer(kc, axle, &effects);
+    find_loose(kc, axle, rank, &effects, sprung);
     if (axle->steer < 0)
         axle->unsteered = "no coordinate turns its wheels while their travel is held";
 }
@@ -547,6 +584,13 @@ void kc_warn(const Kc *kc)
                   kc->rubbers > 1 ? pool_print(kc->pool, "%d bushings, %s,", kc->rubbers, names)
                                   : pool_print(kc->pool, "bushing %s", names),
                   kc->rubbers > 1 ? "are" : "is");
+    for (int a = 0; a < kc->axles && !kc->rubbers; ++a)
+        if (kc->axle[a].loose)
+            diag_warn((Place){kc->model->source, 0, 0},
+                      "what its wheels share with those of other axles is counted by each: `--sheet` has the loads",
+                      "axle %s: no force element holds coordinate '%s', which moves its wheels up and down: it stays "
+                      "where it is set up in forces, wheel and roll rates",
+                      kc->axle[a].name, kc->axle[a].loose);
 }
 
 Kc *kc_open(Pool *pool, const Model *model, const Scene *scene, Solve solve, const char *axle)

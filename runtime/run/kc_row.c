@@ -251,7 +251,7 @@ int kc_row(const Kc *kc, const KcAxle *axle, KcMotion motion, const double *w, K
     for (int i = 0; i < n; ++i) {
         KcPose pose;
         kc_pose(&axle->wheel[i], look, &pose);
-        y[i] = pose.contact[1];
+        y[i] = pose.contact[1] - kc->middle;
         vz[i] = motion == KC_OPPOSITE ? axle->wheel[i].side : 1;
         for (int k = 0; k < KC_WHEEL_ROOM; ++k)
             row->wheel[i][k] = NAN;

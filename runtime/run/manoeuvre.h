@@ -322,6 +322,10 @@ bool manoeuvre_has_units(Manoeuvre *manoeuvre);
 void manoeuvre_braked(Manoeuvre *manoeuvre, const Trial *trial, double begin, double speed);
 /* True: the run may end below *context, m/s. */
 bool manoeuvre_is_slow(void *context, const Trial *trial);
+/* All wheels of one side, those within 1 mm of the middle left out, are without load in a row. */
+bool manoeuvre_side_lifts(const TestCar *car, const Trial *trial, int row);
+/* That, or it slides by more than 45 degrees off its heading: trial_spins(). */
+bool manoeuvre_is_over(void *context, const Trial *trial);
 /* The way along the plane from one time to another one, m. */
 double manoeuvre_way(const Trial *trial, double from, double to);
 /* The speed from which the vehicle, pedals free, has `speed` when the pedal begins to move, and when that is, s. */

@@ -11,28 +11,13 @@
 #include <math.h>
 #include <string.h>
 
-/* The middle between the wheels, y of the drawing. */
-static double middle_of(const Model *model)
-{
-    double low = INFINITY, high = -INFINITY;
-    for (int w = 0; w < model->wheels; ++w) {
-        const Body *body = &model->body[model->wheel[w].body];
-        double A[9], at[3];
-        mat_from_euler(body->euler, A);
-        apply3(A, model->wheel[w].center, at);
-        low = fmin(low, at[1] + body->position[1]);
-        high = fmax(high, at[1] + body->position[1]);
-    }
-    return (low + high) / 2;
-}
-
 /* The base's axes at design are those of the drawing; place and coordinates of rest as keys of `initial`. Wherever the
  * vehicle is drawn, it begins with its centre of mass at x = 0 and the middle between its wheels at y = 0. */
 static const char *rest_of(TestCar *car)
 {
     const Model *model = car->model;
     const double *state = tape_array(car->sheet.found->self, car->sheet.found->engine->code->state_offset);
-    const double beside[3] = {0, middle_of(model) - model->body[BODY_BASE].position[1], 0};
+    const double beside[3] = {0, kc_middle_of(model) - model->body[BODY_BASE].position[1], 0};
     double A[9], com[3], middle[3];
     Text text = {.pool = car->pool};
     mat_from_euler(state + 3, A);
@@ -164,22 +149,25 @@ void car_refuse(const TestCar *car, const char *remedy, const char *what)
     diag_fail((Place){car->model ? car->model->source : NULL, 0, 0}, remedy, "%s", what);
 }
 
+void car_need_origin(const TestCar *car)
+{
+    static const double near_enough = 0.1; /* m */
+    const double *origin = car->model->body[BODY_BASE].position, beside = origin[1] - kc_middle_of(car->model);
+    if (fabs(beside) > near_enough || fabs(car->com[0]) > car->sheet.wheelbase)
+        car_refuse(
+            car, "give the base a `position` between its wheels",
+            pool_print(
+                car->pool,
+                "drivers steer and keep a speed by the base's origin, and that of body '%s' is %.3g m aside of the "
+                "middle between the wheels and %.3g m from the centre of mass along x",
+                car->model->body[BODY_BASE].name, fabs(beside), fabs(car->com[0])));
+}
+
 void car_need_steering(const TestCar *car)
 {
     if (!car->axle)
         car_refuse(car, car->steer_remedy, pool_print(car->pool, "the vehicle can't be steered: %s", car->unsteered));
-}
-
-void car_need_origin(const TestCar *car)
-{
-    static const double near_enough = 0.1; /* m */
-    const double *origin = car->model->body[BODY_BASE].position, beside = origin[1] - middle_of(car->model);
-    if (fabs(beside) > near_enough || fabs(car->com[0]) > car->sheet.wheelbase)
-        car_refuse(car, "give the base a `position` between its wheels",
-                   pool_print(car->pool,
-                              "a driver steers by the base's origin, and that of body '%s' is %.3g m aside of the "
-                              "middle between the wheels and %.3g m from the centre of mass along x",
-                              car->model->body[BODY_BASE].name, fabs(beside), fabs(car->com[0])));
+    car_need_origin(car);
 }
 
 void car_need_drive(const TestCar *car)

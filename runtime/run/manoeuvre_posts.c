@@ -60,6 +60,7 @@ static double sign_of(double x)
 static bool find_signs(const Model *model, Pool *pool, int kind, PostMotion *motion)
 {
     double mean = 0, at[3];
+    const double middle = kc_middle_of(model);
     int up = 0, down = 0;
     *motion = motion_kind[kind];
     motion->sign = pool_alloc(pool, ((size_t)model->wheels + 1) * sizeof *motion->sign);
@@ -69,7 +70,7 @@ static bool find_signs(const Model *model, Pool *pool, int kind, PostMotion *mot
     }
     for (int w = 0; w < model->wheels; ++w) {
         centre_of(model, w, at);
-        const double ahead = sign_of(at[0] - mean), left = sign_of(at[1]);
+        const double ahead = sign_of(at[0] - mean), left = sign_of(at[1] - middle);
         motion->sign[w] = (const double[MOTIONS]){1, ahead, left, ahead * left}[kind];
         up += motion->sign[w] > 0;
         down += motion->sign[w] < 0;
@@ -106,12 +107,13 @@ static const char *passing(Manoeuvre *m)
 {
     const Model *model = m->car->model;
     const double speed = m->value[SPEED], duration = m->value[DURATION] + ride_run_in;
+    const double middle = kc_middle_of(model);
     double ahead = -INFINITY, wide = 0, at[3];
     Text posts = {.pool = m->pool};
     for (int w = 0; w < model->wheels; ++w) {
         centre_of(model, w, at);
         ahead = fmax(ahead, at[0]);
-        wide = fmax(wide, fabs(at[1]));
+        wide = fmax(wide, fabs(at[1] - middle));
     }
     for (int w = 0; w < model->wheels; ++w) {
         centre_of(model, w, at);
@@ -119,7 +121,7 @@ static const char *passing(Manoeuvre *m)
                    "  %s: {road: {type: iso8608, class: %c, length: %.9g, seed: %.0f, start: 10, track: %.9g}, "
                    "x: %.9g, y: %.9g, speed: %.17g}\n",
                    model->wheel[w].name, 'A' + (int)m->value[CLASS] - 1, ceil(speed * (duration + 2) + 20),
-                   m->value[SEED], wide > 0 ? 2 * wide : 1.5, at[0] - ahead, at[1], speed);
+                   m->value[SEED], wide > 0 ? 2 * wide : 1.5, at[0] - ahead, at[1] - middle, speed);
     }
     return standing(m->car, duration, posts.s);
 }

@@ -298,12 +298,16 @@ static Manoeuvre drive(Pool *pool, const Model *model, const ManoeuvreKind *kind
         sheet_note(m.result, m.car->sheet.kc->units);
     const double *aside = m.car->aside;
     if (fabs(aside[0]) > slight[0] || fabs(aside[1]) > slight[1])
-        sheet_note(m.result, pool_print(pool,
-                                        "straight ahead at %.3g m/s, with the steering as it is set up, the vehicle "
-                                        "turns to the %s by %.2g m/s^2 and leans to the %s by %.2g deg: left and right "
-                                        "differ",
-                                        aside[2], side(aside[0]), fabs(aside[0]), side(aside[1]),
-                                        57.29577951308232 * fabs(aside[1])));
+        sheet_note(m.result,
+                   pool_print(pool,
+                              "straight ahead at %.3g m/s, with the steering as it is set up, the vehicle "
+                              "%s%s: left and right differ",
+                              aside[2],
+                              fabs(aside[0]) > slight[0] / 100 ? pool_print(pool, "turns to the %s by %.2g m/s^2 and ",
+                                                                            side(aside[0]), fabs(aside[0]))
+                                                               : "",
+                              pool_print(pool, "leans to the %s by %.2g deg", side(aside[1]),
+                                         57.29577951308232 * fabs(aside[1]))));
     engine_rest(m.car->engine);
     return m;
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Steering that makes vehicles lift wheels: a J-turn, and a fishhook, which steers back when the vehicle has rolled.
  * From speed to speed, until both wheels of each axle on one side are without load, or the fastest has been driven. */
+#include "base/vec3.h"
 #include "run/manoeuvre.h"
 
 #include <math.h>
@@ -24,30 +25,41 @@ static double wave(const void *context, double time)
     return time > hook->turns ? fmax(there - (time - hook->turns) * hook->rate, -1) : there;
 }
 
-/* 1: the wheel is on the left or in the middle, -1: on the right. */
-static double side_of(const TestCar *car, const char *wheel)
+/* 1: the wheel is on the left, -1: on the right, 0: in the middle. */
+static int side_of(const TestCar *car, const Wheel *wheel)
 {
-    const Kc *kc = car->sheet.kc;
-    for (int a = 0; a < kc->axles; ++a)
-        for (int k = 0; k < kc->axle[a].wheels; ++k)
-            if (!strcmp(kc->axle[a].wheel[k].name, wheel))
-                return kc->axle[a].wheel[k].side;
-    return 0;
+    const Body *body = &car->model->body[wheel->body];
+    double A[9], at[3];
+    mat_from_euler(body->euler, A);
+    apply3(A, wheel->center, at);
+    return kc_side(car->sheet.kc, at[1] + body->position[1]);
+}
+
+/* The wheels of a side have no load in a row; false for a side without wheels. */
+static bool lifts(const TestCar *car, const Trial *trial, int row, int side)
+{
+    const Model *model = car->model;
+    double load = 0;
+    int wheels = 0;
+    for (int w = 0; w < model->wheels; ++w)
+        if (side_of(car, &model->wheel[w]) == side && ++wheels)
+            load += trial->wheel[(row * model->wheels + w) * TRIAL_OF_WHEEL + TRIAL_WHEEL_LOAD];
+    return wheels && !(load > 0);
+}
+
+bool manoeuvre_side_lifts(const TestCar *car, const Trial *trial, int row)
+{
+    return lifts(car, trial, row, 1) || lifts(car, trial, row, -1);
 }
 
 /* What happened: seconds during which one side had no load, in one piece. */
 static double without_load(const Manoeuvre *m, const Trial *trial)
 {
-    const Model *model = m->car->model;
     double most = 0;
     for (int side = 1; side >= -1; side -= 2) {
         double since = NAN;
         for (int i = 0; i < trial->rows; ++i) {
-            double load = 0;
-            for (int w = 0; w < model->wheels; ++w)
-                if (side_of(m->car, model->wheel[w].name) == side)
-                    load += trial->wheel[(i * model->wheels + w) * TRIAL_OF_WHEEL + TRIAL_WHEEL_LOAD];
-            if (load > 0 || trial->row[i][TRIAL_TIME] < begin)
+            if (trial->row[i][TRIAL_TIME] < begin || !lifts(m->car, trial, i, side))
                 since = NAN;
             else
                 since = isnan(since) ? trial->row[i][TRIAL_TIME] : since;

@@ -14,11 +14,6 @@ static const char *straight_line(const Manoeuvre *m, const PathDriver *driver)
                                  pool_print(m->pool, "{points: [[%.9g, 0], [0, 0], [%g, 0]]}", -far / 10, far));
 }
 
-static bool is_over(void *context, const Trial *trial)
-{
-    return trial_spins(trial) || manoeuvre_is_slow(context, trial);
-}
-
 void manoeuvre_split_braking(Manoeuvre *m)
 {
     static const Channel over[] = {TRIAL_ANGLE, TRIAL_YAW_RATE, TRIAL_SIDESLIP};
@@ -37,15 +32,10 @@ void manoeuvre_split_braking(Manoeuvre *m)
                    "road: {type: flat, friction: {patches: [{x: [%g, %g], y: [0, %g], value: %.17g, "
                    "fade: %g}]}}\n%sinputs:\n  brake: {step: {to: %.17g, rise: %g, start: %g}}\n",
                    -far, far, far, low, beside, steered ? straight_line(m, &driver) : "", level, rise, start);
-    const Trial *trial = trial_run(car, "braking", car_scene(car, most, from, false, more), is_over, &below);
+    const Trial *trial = trial_run(car, "braking", car_scene(car, most, from, false, more), manoeuvre_is_over, &below);
     manoeuvre_whole(m, trial, "a lower speed or less brake: speed=10, brake=0.3");
     manoeuvre_keep(m, trial);
-    if (trial_spins(trial))
-        sheet_note(m->result,
-                   pool_print(m->pool, "the vehicle spins, by %.3g s after the pedal moved: it does not stop straight",
-                              trial->row[trial->rows - 1][TRIAL_TIME] - start));
-    else
-        manoeuvre_braked(m, trial, start, speed);
+    manoeuvre_braked(m, trial, start, speed);
     const int turning =
         trial_peak(trial, TRIAL_YAW_RATE, start, INFINITY, trial_at(trial, TRIAL_YAW, start + 1) < 0 ? -1 : 1);
     Sheet *s = m->result;

@@ -6,11 +6,13 @@
 #include <math.h>
 #include <string.h>
 
-static const double gravity = 9.80665;
-static const double begin = 5;                     /* s straight ahead, or into the circle */
-static const double learns = 0.5;                  /* 1/s, how fast the driver on the circle does */
-static const double rise = 3, hold = 12, look = 3; /* s, on the circle: from level to level, at each; look: its end */
-static const double slowest = 0.95;                /* share of the speed below which it is not kept */
+static const double gravity = 9.80665, by_default = 2; /* m/s^2; the driver on a circle is found for this at most */
+static const double begin = 5;                         /* s straight ahead, or into the circle */
+static const double learns = 0.5;                      /* 1/s, how fast the driver on the circle does */
+static const double shortest = 3, hold = 12, look = 3; /* s, on the circle: from level to level at least, at each; look:
+                                                          its end */
+static const double well_reached = 0.98;               /* share of `high` up to which gradients are taken */
+static const double slowest = 0.95;                    /* share of the speed below which it is not kept */
 /* Of the largest lateral acceleration, below which the limit is passed: with steering that grows, and on a circle. */
 static const double past_peak[] = {0.98, 0.9};
 
@@ -18,7 +20,8 @@ static const double past_peak[] = {0.98, 0.9};
 typedef struct Limit {
     double sign, speed, radius; /* radius 0: at constant speed */
     double most;                /* lateral acceleration so far */
-    const char *why;            /* the run ended */
+    const TestCar *car;
+    const char *why; /* the run ended */
 } Limit;
 
 static bool is_at_limit(void *context, const Trial *trial)
@@ -37,6 +40,8 @@ static bool is_at_limit(void *context, const Trial *trial)
     else if (limit->radius > 0 &&
              fabs(hypot(row[TRIAL_X], row[TRIAL_Y] - limit->sign * limit->radius) - limit->radius) > 1)
         limit->why = "the circle is left by more than 1 m";
+    else if (manoeuvre_side_lifts(limit->car, trial, trial->rows - 1))
+        limit->why = "the wheels of one side are without load";
     else if (ay < past_peak[limit->radius > 0] * limit->most && limit->most > 1)
         limit->why = "the lateral acceleration no longer grows";
     return limit->why;
@@ -106,6 +111,10 @@ static void add_results(Manoeuvre *m, const Trial *trial, const Points *points, 
             sheet_add(s, NULL, pool_print(m->pool, "%s.critical_speed", side), "Critical speed", "m/s",
                       sqrt(-wheelbase / understeer));
     }
+    const double reached = points->count ? limit->sign * points->point[points->count - 1][TRIAL_AY] : 0;
+    if (!isnan(understeer) && reached < well_reached * m->value[2])
+        sheet_note(s, pool_print(m->pool, "gradients %s are of lateral accelerations up to %.3g m/s^2, not to high=%g",
+                                 side, reached, m->value[2]));
     sheet_add(s, section, pool_print(m->pool, "%s.limit", side), "Largest lateral acceleration", "m/s^2",
               limit->sign * at[TRIAL_AY]);
     sheet_add(s, NULL, pool_print(m->pool, "%s.limit_steer", side), "Steer angle there", "rad",
@@ -132,7 +141,7 @@ static void draw(Manoeuvre *m)
 void manoeuvre_steady_speed(Manoeuvre *m)
 {
     TestCar *car = m->car;
-    const double speed = m->value[0], growth = m->value[3], most = 15; /* m/s^2 by the linear model, where it ends */
+    const double speed = m->value[0], growth = m->value[3], most = 40; /* m/s^2 by the linear model, where it ends */
     car_need_steering(car);
     car_need_drive(car);
     car_need_brake(car);
@@ -141,14 +150,20 @@ void manoeuvre_steady_speed(Manoeuvre *m)
     for (int side = 1; side >= -1; side -= 2) {
         const double end = 0.999 * car->range[side > 0], to = side * fmin(most * by_ay, fabs(end));
         const double duration = fabs(to) / by_ay / growth + 1;
-        Limit limit = {.sign = side, .speed = speed};
+        Limit limit = {.sign = side, .speed = speed, .car = car};
         const char *more =
             pool_print(m->pool, "inputs:\n  %s: {ramp: {to: %.17g, duration: %.9g, start: %g, blend: 1}}\n",
                        car->model->input[car->steering].name, car_steering(car, to), duration, begin);
         const Trial *trial = trial_run(car, side > 0 ? "left" : "right",
                                        car_scene(car, begin + duration, speed, true, more), is_at_limit, &limit);
         if (!limit.why && !trial->tipped && !trial->end)
-            limit.why = fabs(to) < most * by_ay ? "the steering is at its end" : "it was not asked for more";
+            limit.why =
+                fabs(to) < most * by_ay
+                    ? "the steering is at its end"
+                    : pool_print(
+                          m->pool,
+                          "there the steering is what the linear model turns into %g m/s^2, which is all that is tried",
+                          most);
         manoeuvre_keep(m, trial);
         const Points points = rows_between(m, trial, side);
         add_results(m, trial, &points, &limit);
@@ -164,22 +179,28 @@ static double level(const Manoeuvre *m, int k)
     return m->value[1] + (m->value[2] - m->value[1]) * k / (LEVELS - 1);
 }
 
-static double level_end(int k)
+/* s from level to level, whose steepest slope in time, 3/2 of the mean one, is at most `growth`. */
+static double rise_of(const Manoeuvre *m)
 {
-    return begin + (k + 1) * (rise + hold);
+    return fmax(shortest, 1.5 * (level(m, 1) - level(m, 0)) / m->value[3]);
+}
+
+static double level_end(const Manoeuvre *m, int k)
+{
+    return begin + (k + 1) * (rise_of(m) + hold);
 }
 
 static const char *speeds(const Manoeuvre *m, double radius, double most, double *duration)
 {
-    const double spacing = 0.5, high = m->value[2], growth = m->value[3];
+    const double spacing = 0.5, high = m->value[2], growth = m->value[3], rise = rise_of(m);
     Text times = {.pool = m->pool}, values = {.pool = m->pool};
-    *duration = level_end(LEVELS - 1) + rise / 2 + (most - high) / growth;
+    *duration = level_end(m, LEVELS - 1) + rise / 2 + (most - high) / growth;
     for (double t = 0; t <= *duration + spacing; t += spacing) {
         const int k = (int)fmin(fmax(floor((t - begin) / (rise + hold)), 0), LEVELS - 1);
         const double share = fmin(fmax((t - begin - k * (rise + hold)) / rise, 0), 1);
         const double before = level(m, k > 0 ? k - 1 : 0);
         double ay = before + (level(m, k) - before) * share * share * (3 - 2 * share);
-        const double after = fmax(0, t - level_end(LEVELS - 1)), eased = fmin(after, rise);
+        const double after = fmax(0, t - level_end(m, LEVELS - 1)), eased = fmin(after, rise);
         ay += growth * (eased * eased / (2 * rise) + after - eased);
         text_print(&times, "%s%g", t > 0 ? ", " : "", t);
         text_print(&values, "%s%.12g", t > 0 ? ", " : "", sqrt(ay * radius));
@@ -191,9 +212,9 @@ static const char *speeds(const Manoeuvre *m, double radius, double most, double
 static Points levels_of(const Manoeuvre *m, const Trial *trial)
 {
     Points points = {0, pool_alloc(m->pool, LEVELS * sizeof *trial->row)};
-    for (int k = 0; k < LEVELS && trial->row[trial->rows - 1][TRIAL_TIME] >= level_end(k); ++k) {
+    for (int k = 0; k < LEVELS && trial->row[trial->rows - 1][TRIAL_TIME] >= level_end(m, k); ++k) {
         for (Channel c = 0; c < TRIAL_CHANNELS; ++c)
-            points.point[points.count][c] = trial_mean(trial, c, level_end(k) - look, level_end(k));
+            points.point[points.count][c] = trial_mean(trial, c, level_end(m, k) - look, level_end(m, k));
         ++points.count;
     }
     return points;
@@ -214,9 +235,9 @@ void manoeuvre_steady_radius(Manoeuvre *m)
         car_refuse(car, pool_print(m->pool, "radius=%.3g", ceil(1.2 * least)),
                    "the steering does not reach that circle");
     car_settle(car, start);
-    const PathDriver driver = manoeuvre_driver(m, sqrt(m->value[2] * radius), learns);
+    const PathDriver driver = manoeuvre_driver(m, sqrt(fmin(m->value[2], by_default) * radius), learns);
     for (int side = 1; side >= -1; side -= 2) {
-        Limit limit = {.sign = side, .radius = radius};
+        Limit limit = {.sign = side, .radius = radius, .car = car};
         const char *more = manoeuvre_driver_text(
             m, &driver, car_pedals(car, target),
             pool_print(m->pool, "{circle: {center: [0, %.17g], radius: %.17g}}", side * radius, side * radius));

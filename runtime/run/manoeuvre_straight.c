@@ -19,6 +19,11 @@ bool manoeuvre_is_slow(void *context, const Trial *trial)
     return trial->row[trial->rows - 1][TRIAL_SPEED] <= *(const double *)context;
 }
 
+bool manoeuvre_is_over(void *context, const Trial *trial)
+{
+    return trial_spins(trial) || manoeuvre_is_slow(context, trial);
+}
+
 static bool is_fast(void *context, const Trial *trial)
 {
     enum { ROWS = 200 };
@@ -31,16 +36,22 @@ static bool is_fast(void *context, const Trial *trial)
 
 double manoeuvre_way(const Trial *trial, double from, double to)
 {
-    return hypot(trial_at(trial, TRIAL_X, to) - trial_at(trial, TRIAL_X, from),
-                 trial_at(trial, TRIAL_Y, to) - trial_at(trial, TRIAL_Y, from));
+    double x = trial_at(trial, TRIAL_X, from), y = trial_at(trial, TRIAL_Y, from), way = 0;
+    for (int i = 0; i < trial->rows && trial->row[i][TRIAL_TIME] < to; ++i)
+        if (trial->row[i][TRIAL_TIME] > from) {
+            way += hypot(trial->row[i][TRIAL_X] - x, trial->row[i][TRIAL_Y] - y);
+            x = trial->row[i][TRIAL_X];
+            y = trial->row[i][TRIAL_Y];
+        }
+    return way + hypot(trial_at(trial, TRIAL_X, to) - x, trial_at(trial, TRIAL_Y, to) - y);
 }
 
 /* Keep the trial, which has to be whole; tell how far it went aside. */
-static void keep(Manoeuvre *m, const Trial *trial)
+static void keep(Manoeuvre *m, const Trial *trial, bool may_tip)
 {
     static const Channel over[] = {TRIAL_SPEED, TRIAL_AX, TRIAL_PITCH, TRIAL_LOAD, TRIAL_Y};
     const double *last = trial->row[trial->rows - 1];
-    if (trial->end || trial->tipped)
+    if (trial->end || (trial->tipped && !may_tip))
         car_refuse(m->car, "gicrun with the scene of a lower speed shows more",
                    trial->end ? trial->end : "the vehicle tips over");
     manoeuvre_keep(m, trial);
@@ -71,6 +82,13 @@ void manoeuvre_braked(Manoeuvre *m, const Trial *trial, double start, double spe
 {
     Sheet *s = m->result;
     const double *last = trial->row[trial->rows - 1], from = trial_at(trial, TRIAL_SPEED, start);
+    if (trial_spins(trial)) { /* the speed along its heading is not that over the road */
+        sheet_note(s,
+                   pool_print(m->pool, "the vehicle spins, by %.3g s after the pedal moved: it does not stop straight",
+                              last[TRIAL_TIME] - start));
+        sheet_add(s, "Braking", "initial_speed", "Speed where the pedal begins to move", "m/s", from);
+        return;
+    }
     if (last[TRIAL_SPEED] > standing)
         car_refuse(m->car, "brake=1 is the whole pedal; does the torque of `brake` follow it?",
                    pool_print(m->pool, "the vehicle does not stop within %g s: it still has %.3g m/s", last[TRIAL_TIME],
@@ -102,8 +120,8 @@ void manoeuvre_braking(Manoeuvre *m)
     const double from = manoeuvre_speed_before(car, speed, &start);
     const char *more =
         pool_print(m->pool, "inputs:\n  brake: {step: {to: %.17g, rise: %g, start: %g}}\n", level, rise, start);
-    const Trial *trial = trial_run(car, "braking", car_scene(car, most, from, false, more), manoeuvre_is_slow, &below);
-    keep(m, trial);
+    const Trial *trial = trial_run(car, "braking", car_scene(car, most, from, false, more), manoeuvre_is_over, &below);
+    keep(m, trial, false);
     manoeuvre_braked(m, trial, start, speed);
 }
 
@@ -135,7 +153,7 @@ void manoeuvre_coast(Manoeuvre *m)
     car_settle(car, speed);
     const Trial *trial =
         trial_run(car, "coast-down", car_scene(car, most, speed, false, NULL), manoeuvre_is_slow, &below);
-    keep(m, trial);
+    keep(m, trial, false);
     const double *last = trial->row[trial->rows - 1];
     if (last[TRIAL_SPEED] > below)
         car_refuse(car, "a tire with rolling resistance, or a force of type `aero`",
@@ -183,7 +201,7 @@ void manoeuvre_acceleration(Manoeuvre *m)
     if (!car_runs_straight(car, rolling, &why))
         car_refuse(car, car->remedy, why);
     const Trial *trial = accelerate(car, level, most, &ending);
-    keep(m, trial);
+    keep(m, trial, true);
     Sheet *s = m->result;
     const double *last = trial->row[trial->rows - 1];
     const double *peak = trial->row[trial_peak(trial, TRIAL_AX, begin, INFINITY, 1)];
@@ -207,7 +225,10 @@ void manoeuvre_acceleration(Manoeuvre *m)
         sheet_add(s, NULL, pool_print(m->pool, "speed_%g_m", ways[i]), pool_print(m->pool, "Speed there"), "m/s",
                   trial_at(trial, TRIAL_SPEED, at));
     }
-    if (ending.quiet)
+    if (trial->tipped)
+        sheet_note(s, pool_print(m->pool, "the vehicle tips over at %.4g m/s, after %.3g s: there is no top speed",
+                                 last[TRIAL_SPEED], last[TRIAL_TIME] - begin));
+    else if (ending.quiet)
         sheet_add(s, NULL, "top_speed", "Top speed", "m/s", last[TRIAL_SPEED]);
     else
         sheet_note(s,
@@ -230,7 +251,7 @@ void manoeuvre_elasticity(Manoeuvre *m)
     const char *more =
         pool_print(m->pool, "inputs:\n  accelerator: {step: {to: %.17g, rise: %g, start: 0}}\n", level, rise);
     const Trial *trial = trial_run(car, "elasticity", car_scene(car, most, low, false, more), is_past, &high);
-    keep(m, trial);
+    keep(m, trial, true);
     const double there = trial_passes(trial, TRIAL_SPEED, 0, high, 1);
     if (isnan(there))
         car_refuse(car, "a lower speed `high`, or accelerator=1",

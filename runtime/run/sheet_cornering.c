@@ -22,6 +22,32 @@ static bool is_left_out(const Linear *linear, int i)
     return i == X || i == Y || i == YAW || i == linear->places + X;
 }
 
+/* A brake that drags on a rolling wheel is wound up and slips, with a torque that is constant: about a windup of 0 its
+ * elastic pad would tie the wheel to its carrier. Brakes that are not applied keep theirs, which changes nothing. */
+static int wind_brakes(const Sheet *sheet, Instance *self)
+{
+    const gic_model *code = sheet->found->engine->code;
+    const Model *model = sheet->model;
+    const int slow = code->slow_count;
+    const size_t all = (size_t)(slow + code->fast_count);
+    double *state = tape_array(self, code->state_offset), *fast = state + slow;
+    double *rate[2] = {pool_alloc(sheet->pool, all * sizeof **rate), pool_alloc(sheet->pool, all * sizeof **rate)};
+    int status = GIC_OK;
+    for (int wound = 0; wound < 2 && status == GIC_OK; ++wound) {
+        for (int i = 0; i < model->wheels; ++i)
+            if (wheel_fast_states(&model->wheel[i]) > FAST_BRAKE)
+                fast[model->wheel[i].fast + FAST_BRAKE] =
+                    wound ? copysign(1, fast[model->wheel[i].fast + FAST_SPIN]) : 0;
+        status = code->rhs(self, gic_time(&self->head), state, rate[wound]);
+    }
+    for (int i = 0; i < model->wheels && status == GIC_OK; ++i) {
+        const int spin = slow + model->wheel[i].fast + FAST_SPIN;
+        if (wheel_fast_states(&model->wheel[i]) > FAST_BRAKE && rate[0][spin] == rate[1][spin])
+            fast[model->wheel[i].fast + FAST_BRAKE] = 0;
+    }
+    return status;
+}
+
 int sheet_set_in_motion(const Sheet *sheet, Instance *self, double speed)
 {
     const gic_model *code = sheet->found->engine->code;
@@ -38,7 +64,8 @@ int sheet_set_in_motion(const Sheet *sheet, Instance *self, double speed)
     velocity[0] = speed * ahead[0] / level;
     velocity[1] = speed * ahead[1] / level;
     velocity[2] = 0;
-    return scene_set_fast(code, NULL, &self->head);
+    const int status = scene_set_fast(code, NULL, &self->head);
+    return status == GIC_OK ? wind_brakes(sheet, self) : status;
 }
 
 /* False for a state that nothing changes, or that changes nothing, such as the windup of a brake that is not applied.

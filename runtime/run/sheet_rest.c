@@ -168,7 +168,8 @@ double sheet_axle_place(const Sheet *sheet, const KcAxle *axle, double *aside)
         for (int k = 0; k < wheel->parts; ++k) { /* dual wheels, along their axis, which points to the left */
             sub3(wheel->part[k]->center, wheel->wheel->center, apart);
             apply3(A, apart, drawn);
-            *aside = fmax(*aside, fabs(pose.contact[1] + copysign(norm3(apart), drawn[1]) * pose.axis[1]));
+            *aside = fmax(*aside,
+                          fabs(pose.contact[1] - sheet->kc->middle + copysign(norm3(apart), drawn[1]) * pose.axis[1]));
         }
     }
     return x;

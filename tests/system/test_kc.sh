@@ -196,6 +196,45 @@ run --kc --loads --axle rear "$models/hatchback.veh"
 check 'an aligning torque of 100 N m in both' sh -c "toe=\$(awk '\$1 == \"aligning\" && \$2 != \"opposed\" { print \$3; exit }' '$work/out') && grep -qF \"<td>aligning</td><td>rear_l</td><td class=\\\"n\\\">\$toe<br>\" '$work/loads.html'"
 run --kc --loads "$models/motorcycle.veh" -o "$work/loads.csv"
 check 'an axle without compliance is told beside CSV' says 'compliance of axle front: nothing holds a coordinate that moves its wheels'
+# a beam that rocks on a slider, with a wheel 0.5 m ahead and one behind: it is free, which is told, and stays
+cat >"$work/bogie.veh" <<'EOF'
+gicgen: 1
+model: bogie
+base: body
+bodies:
+  body: {mass: 1000, com: [0, 0, 0.5], inertia: [500, 1500, 1500]}
+  slider_l: {mass: 10, com: [-1, 0.7, 0.3], inertia: [1, 1, 1]}
+  beam_l: {mass: 60, com: [-1, 0.7, 0.3], inertia: [5, 20, 20]}
+  front_l: {mass: 10, com: [1, 0.7, 0.3], inertia: [1, 1, 1]}
+joints:
+  slider_l: {type: prismatic, bodies: [body, slider_l], axis: [0, 0, 1]}
+  beam_l: {type: revolute, bodies: [slider_l, beam_l], point: [-1, 0.7, 0.3], axis: [0, 1, 0]}
+  front_l: {type: prismatic, bodies: [body, front_l], axis: [0, 0, 1]}
+coordinates:
+  slider_l: {type: translation, bodies: [body, slider_l], axis: [0, 0, 1], range: [-0.1, 0.1]}
+  beam_l: {type: angle, bodies: [slider_l, beam_l], axis: [0, 1, 0], range: [-0.3, 0.3]}
+  front_l: {type: translation, bodies: [body, front_l], axis: [0, 0, 1], range: [-0.1, 0.1]}
+forces:
+  slider_l: {type: spring_damper, coordinate: slider_l, stiffness: 40000, damping: 4000, free: -0.06}
+  front_l: {type: spring_damper, coordinate: front_l, stiffness: 20000, damping: 2000, free: -0.12}
+wheels:
+  front_l: {body: front_l, center: [1, 0.7, 0.3], radius: 0.3, stiffness: 200000, damping: 100}
+  second_l: {body: beam_l, center: [-0.5, 0.7, 0.3], radius: 0.3, stiffness: 200000, damping: 100}
+  third_l: {body: beam_l, center: [-1.5, 0.7, 0.3], radius: 0.3, stiffness: 200000, damping: 100}
+EOF
+run --kc "$work/bogie.veh" -q -o "$work/bogie.csv"
+check 'a bogie' exits 0
+check 'its free beam is told' says "axle rear: no force element holds coordinate 'beam_l', which moves its wheels up and down"
+check 'of the axle in front nothing' sh -c "! grep -q 'axle front' '$work/err'"
+# drawn 9 m aside, left is left
+plain=$root/tests/data/manoeuvre/plain.veh
+sed 's/, 0.7, /, 9.7, /g; s/, -0.7, /, 8.3, /g; s/\[0, 0, 0.5\]/[0, 9, 0.5]/g' "$plain" >"$work/aside.veh"
+run --kc "$plain" -o "$work/drawn.csv"
+run --kc "$work/aside.veh" -o "$work/aside.csv"
+drawn_aside() { awk -F, 'FNR == 1 { for (i = 1; i <= NF; ++i) { moved[i] = $i ~ /contact_y|roll_centre_y/; rolls = rolls || $i ~ /roll_rate/ } next } NR == FNR { for (i = 1; i <= NF; ++i) v[FNR, i] = $i; next }
+    { for (i = 1; i <= NF; ++i) if (!moved[i]) { d = $i - v[FNR, i]; ++n; bad += !($i == v[FNR, i] || d * d < 1e-18 * (1 + $i * $i)) } } END { exit !(n > 1000 && rolls && !bad) }' "$work/drawn.csv" "$work/aside.csv"; }
+check 'a vehicle that is drawn aside' drawn_aside
+
 # one axle is the foremost and the rearmost one, and stands beside that of a vehicle
 sed '/^  r_/d; /rear/d' "$root/tests/data/manoeuvre/bar.veh" >"$work/single.veh"
 run --kc --axle front --compare "$work/single.veh" "$root/tests/data/manoeuvre/bar.veh"

@@ -157,6 +157,63 @@ for words in 'steady-radius radius=40' 'single-lane-change speed=15 ay=1' 'ride 
     done
 done
 
+# and 9 m aside, where all wheels are to the left of y = 0
+plain=$root/tests/data/manoeuvre/plain.veh
+sed 's/, 0.7, /, 9.7, /g; s/, -0.7, /, 8.3, /g; s/\[0, 0, 0.5\]/[0, 9, 0.5]/g' "$plain" >"$work/aside.veh"
+for words in 'single-lane-change speed=15 ay=1' 'ride speed=10 duration=10' 'four-post speed=10 duration=10' 'fishhook from=5 speed=12'; do
+    # shellcheck disable=SC2086
+    run --manoeuvre ${words%% *} "$plain" ${words#* } -q -o "$work/drawn.csv"
+    # shellcheck disable=SC2086
+    run --manoeuvre ${words%% *} "$work/aside.veh" ${words#* } -q -o "$work/shifted.csv"
+    check "$words aside" sh -c "awk -F, 'NR == FNR { v[\$1] = \$2; next } FNR > 1 { ++n; d = \$2 - v[\$1]; bad += !(d * d <= 1e-12 * (1e-6 + v[\$1] * v[\$1])) }
+    END { exit !(n > 3 && !bad) }' '$work/drawn.csv' '$work/shifted.csv'"
+done
+
+# three wheels, one in the middle behind, which belongs to no side: left and right lift at the same speed
+sed -e 's/^  rear_l: {mass: 25, com: .-1.4, 0.75/  tail: {mass: 25, com: [-1.4, 0/; s/^  rear_l: {type: prismatic, bodies: .chassis, rear_l/  tail: {type: prismatic, bodies: [chassis, tail/' \
+    -e 's/^  r_l: {type: translation, bodies: .chassis, rear_l/  tail: {type: translation, bodies: [chassis, tail/; s/^  r_l: {type: spring_damper, coordinate: r_l, stiffness: 3e4, damping: 3000/  tail: {type: spring_damper, coordinate: tail, stiffness: 6e4, damping: 6000/' \
+    -e 's/^  r_l: {body: rear_l, center: .-1.4, 0.75/  tail: {body: tail, center: [-1.4, 0/' "$linear" >"$work/three.veh"
+run --manoeuvre fishhook "$work/three.veh" from=5 speed=16 angle=8 -q -o "$work/three.csv"
+check 'a three-wheeler' exits 0
+check 'lifts to the left as to the right' sh -c "awk -F, '/^(left|right).(lifts|passed),/ { sub(/left.|right./, \"\", \$1); n[\$1]++; v[\$1] = n[\$1] == 1 || v[\$1] == \$2 ? \$2 : \"bad\" } END { exit !(n[\"lifts\"] == 2 && v[\"lifts\"] > 0 && n[\"passed\"] != 1 && v[\"passed\"] != \"bad\" && v[\"lifts\"] != \"bad\") }' '$work/three.csv'"
+
+# a base whose origin is a metre aside: a speed kept there is not that of the vehicle
+sed 's/^  chassis: {mass: 1200, com: \[0, 0, 0.5\]/  chassis: {mass: 1200, position: [0, 1, 0], com: [0, -1, 0.5]/' "$linear" >"$work/origin.veh"
+run --manoeuvre step-steer "$work/origin.veh" speed=16
+check 'a base whose origin is aside' exits 1
+check 'is told' says "that of body 'chassis' is 1 m aside"
+run --manoeuvre braking "$work/origin.veh" speed=16
+check 'straight ahead it does not matter' exits 0
+
+# a brake that drags by 5 N m is no elastic pad that ties the wheel: the driver is that of the car without
+sed 's/brake: 2000 \* brake/brake: 5 + 2000 * brake/' "$linear" >"$work/drags.veh"
+same_driver() { awk -F, 'NR == FNR { v[$1] = $2; next } /^driver.(gain|preview)|understeer|limit,/ { ++n; d = $2 / v[$1] - 1; bad += !(d * d < 4e-4) } END { exit !(n == 6 && !bad) }' "$work/drawn.csv" "$work/drags.csv"; }
+run --manoeuvre steady-radius "$linear" radius=40 -q -o "$work/drawn.csv"
+run --manoeuvre steady-radius "$work/drags.veh" radius=40 -q -o "$work/drags.csv"
+check 'a brake that drags: driver, gradients and limit to 2 %' same_driver
+run --manoeuvre steady-radius "$linear" radius=40 high=6 -q -o "$work/high.csv"
+same_limit() { awk -F, 'NR == FNR { v[$1] = $2; next } /limit,/ { ++n; d = $2 / v[$1] - 1; bad += !(d * d < 1e-4) } END { exit !(n == 2 && !bad) }' "$work/drawn.csv" "$work/high.csv"; }
+check 'the limit does not depend on where gradients end, to 1 %' same_limit
+
+# a load aside: with locked wheels the car spins, and what it goes along its heading is no stopping distance
+sed 's/chassis: {mass: 1200, com: \[0, 0, 0.5\]/chassis: {mass: 1200, com: [0, 0.2, 0.5]/; s/2000 \* brake/4000 * brake/' "$linear" >"$work/spins.veh"
+run --manoeuvre braking "$work/spins.veh" -o "$work/spins.csv" --trace "$work/trace.csv"
+check 'a car that spins' prints 'the vehicle spins'
+check 'has no stopping distance' sh -c "! grep -q stopping '$work/spins.csv'"
+run --manoeuvre braking "$work/spins.veh" brake=0.1 speed=20 -q -o "$work/path.csv" --trace "$work/trace.csv"
+path() { /usr/bin/python3 - "$work/path.csv" "$work/trace.csv" <<'EOF'
+import csv, math, sys
+number = {r[0]: float(r[1]) for r in list(csv.reader(open(sys.argv[1])))[1:] if r[1]}
+rows = [r for r in csv.DictReader(open(sys.argv[2]))]
+key = {k.split(' ')[0]: k for k in rows[0]}
+at = [(float(r[key['time']]), float(r[key['x']]), float(r[key['y']])) for r in rows]
+at = [p for p in at if p[0] >= at[-1][0] - number['stopping_time'] - 1e-9]
+way = sum(math.dist(p[1:], q[1:]) for p, q in zip(at, at[1:]))
+sys.exit(not (abs(way - number['stopping_distance']) < 0.2 and abs(number['aside']) > 1 and number['mfdd'] < number['peak_deceleration']))
+EOF
+}
+check 'the distance is along the path' path
+
 # two on one page: curves of both in each diagram, the other's dashed, scenes of both, notes of both with the other's name
 sed 's/^model: .*/model: other/; s/spin_inertia: 1, brake/spin_inertia: 0.9, brake/' "$linear" >"$work/other.veh"
 run --manoeuvre sine "$linear" --compare "$work/other.veh" speed=16 ay=2 --report "$work/both.html" -o "$work/both.csv"
