@@ -47,8 +47,8 @@ static const char usage[] =
     "                   derivatives\n"
     "  --implicit       code that takes implicit steps too, for stiff models (models/STIFF.md); units of FMI\n"
     "                   likewise\n"
-    "  --tire-tables    Magic Formulas by table, within 1e-6 of a wheel's load: quicker (models/TIRES.md); for the\n"
-    "                   code of one vehicle without --lanes\n"
+    "  --tire-tables    Magic Formulas by table, in lanes by short polynomials, within 1e-6 of a wheel's load:\n"
+    "                   quicker (models/TIRES.md)\n"
     "  --solve FORM     of the equations of motion: auto (default: fewer operations), reduced, articulated for long\n"
     "                   chains, or augmented, with all multipliers\n"
     "  --recovery WAY   of dependent coordinates: auto (default), newton, closed wherever there is a closed form, or\n"
@@ -213,10 +213,9 @@ static Options read_options(int count, char **word)
         usage_error("--implicit is for an FMU and the code of one vehicle in any scene, without --batch, --lanes and "
                     "--scene",
                     NULL);
-    if (options.tire_tables && (options.task != TASK_GENERATE || options.batch.lanes))
-        usage_error("--tire-tables is for the code of one vehicle: it goes with --derivatives, --implicit, --scene, "
-                    "--solve and "
-                    "--recovery, and not with --batch, --fmu, --lanes, --main, --report and what looks at a model",
+    if (options.tire_tables && options.task != TASK_GENERATE && options.task != TASK_BATCH)
+        usage_error("--tire-tables is for code: it goes with --batch, --derivatives, --implicit, --lanes, --scene, "
+                    "--solve and --recovery, and not with --fmu, --main, --report and what looks at a model",
                     NULL);
     if (options.recovery == RECOVERY_POLYNOMIAL && (options.task != TASK_GENERATE || options.batch.lanes ||
                                                     options.scene || options.derivatives || options.implicit))
@@ -284,7 +283,7 @@ static void write_code(Pool *pool, const Model *model, const Sequence *sequence,
     effort_step(told, "they agree; the C is written next");
     name = strcmp(path, "-") ? name : NULL;
     if (options->tire_tables)
-        formulation = formulation_tire_tables(pool, formulation);
+        formulation = formulation_tire_tables(pool, formulation, batch);
     if (batch && batch_missing(formulation))
         diag_fail((Place){model->source, 0, 0}, "simulate such a model vehicle by vehicle, in threads of your own",
                   "code for many vehicles at once can't have %s yet", batch_missing(formulation));

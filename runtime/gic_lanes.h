@@ -24,6 +24,15 @@
  *     LANE_SQRT             0.5 and 0.5 everywhere
  *     LANE_ATAN2            4 and 4 within 2^-900 to 2^900 and 2^-90 to 2^90 of the larger argument
  *
+ * Tires by short polynomials (models/TIRES.md section 11) have functions of their own, of which only a few digits are
+ * right, with either number type. Absolute errors, for any x where no range is stated:
+ *
+ *     LANE_SHORT_ATAN           1.2e-9
+ *     LANE_SHORT_SIN, _COS      3e-11 within |x| <= 2^20
+ *     LANE_SHORT_TAN            3e-10 max(1, tan^2 x) within |x| <= 2^20
+ *     LANE_SHORT_SINE(c, x)     2.4e-9, of sin(c atan x), |c| <= 2
+ *     LANE_SHORT_COSINE(c, x)   2.4e-9, of cos(c atan x), |c| <= 2
+ *
  * In lanes outside, and for LANE_POW, libm's functions are called one by one. Infinities, zeros and their signs, and
  * NaN are as in C99; no lane raises a floating-point exception that its own argument does not ask for, but inexact and
  * underflow. A lane's result depends on its own argument alone. */
@@ -99,6 +108,12 @@
 #define LANE_LOG(x) GIC_LANES_NAME(lane_log_, GIC_LANES)(x)
 #define LANE_TANH(x) GIC_LANES_NAME(lane_tanh_, GIC_LANES)(x)
 #define LANE_POW(x, y) GIC_LANES_NAME(lane_pow_, GIC_LANES)(x, y)
+#define LANE_SHORT_ATAN(x) GIC_LANES_NAME(lane_short_atan_, GIC_LANES)(x)
+#define LANE_SHORT_SIN(x) GIC_LANES_NAME(lane_short_sin_, GIC_LANES)(x)
+#define LANE_SHORT_COS(x) GIC_LANES_NAME(lane_short_cos_, GIC_LANES)(x)
+#define LANE_SHORT_TAN(x) GIC_LANES_NAME(lane_short_tan_, GIC_LANES)(x)
+#define LANE_SHORT_SINE(c, x) GIC_LANES_NAME(lane_short_sine_, GIC_LANES)(c, x)
+#define LANE_SHORT_COSINE(c, x) GIC_LANES_NAME(lane_short_cosine_, GIC_LANES)(c, x)
 
 /* Helpers of the functions below. */
 #define LANE_MEND(outside, f, x, y) GIC_LANES_NAME(lane_mend_, GIC_LANES)(outside, f, x, y)
@@ -108,6 +123,9 @@
 #define LANE_ARC(y, x) GIC_LANES_NAME(lane_arc_, GIC_LANES)(y, x)
 #define LANE_SMALL_ARC(t, eighths) GIC_LANES_NAME(lane_small_arc_, GIC_LANES)(t, eighths)
 #define LANE_SMALL_ASIN(x, z) GIC_LANES_NAME(lane_small_asin_, GIC_LANES)(x, z)
+#define LANE_SHORT_ARC(a) GIC_LANES_NAME(lane_short_arc_, GIC_LANES)(a)
+#define LANE_SHORT_WAVE(r) GIC_LANES_NAME(lane_short_wave_, GIC_LANES)(r)
+#define LANE_SHORT_REDUCE(x, turns) GIC_LANES_NAME(lane_short_reduce_, GIC_LANES)(x, turns)
 #define LANE_GROWTH(x, scale) GIC_LANES_NAME(lane_growth_, GIC_LANES)(x, scale)
 
 /* What compilers make of the loops over signs and roots only if they are told to: of the 32 bytes of AVX, and of the 64
@@ -494,6 +512,103 @@ LANE_FUNCTION gic_lane GIC_LANES_NAME(lane_acos_, GIC_LANES)(gic_lane x)
     const gic_lane twice = p + p, straight = GIC_HALF_PI + GIC_HALF_PI - (twice - (rest + rest));
     return LANE_SELECT(beyond, LANE_SELECT(back, straight, twice),
                        GIC_HALF_PI - ((gic_lane)((gic_mask)p ^ LANE_SIGN(x)) - rest));
+}
+
+/* ---- few digits ------------------------------------------------------------------------------------------------- */
+
+/* Polynomials of least largest absolute error, with the exact slope at 0; generator/expression/curve.c computes the
+ * same ones in double precision, to measure what forces are off by. */
+
+/* atan a, a >= 0: of the smaller one of a and 1 / a. Where no lane asks for it the quotient is left out: by 1 it
+ * changes nothing. Comparisons are such that NaN stays. */
+LANE_FUNCTION gic_lane GIC_LANES_NAME(lane_short_arc_, GIC_LANES)(gic_lane a)
+{
+    const gic_lane one = LANE(GIC_R(1.0));
+    const gic_mask above = (gic_mask)(a > one);
+    gic_lane t = a;
+    if (LANE_ANY(above))
+        t = LANE_MIN(one, a) / LANE_MAX(one, a);
+    const gic_lane z = t * t, z2 = z * z, z4 = z2 * z2;
+    const gic_lane low = (GIC_R(-0.3333326286812764) + z * GIC_R(0.1999762004215144)) +
+                         z2 * (GIC_R(-0.14255463124234446) + z * GIC_R(0.10910278877053915));
+    const gic_lane high = (GIC_R(-0.08289760808605352) + z * GIC_R(0.056127366846161505)) +
+                          z2 * (GIC_R(-0.029446536674692622) + z * GIC_R(0.010025646984568505));
+    const gic_lane arc = t + t * (z * (low + z4 * (high + z4 * GIC_R(-0.0016024360576211084))));
+    return LANE_SELECT(above, GIC_HALF_PI - arc, arc);
+}
+
+LANE_FUNCTION gic_lane GIC_LANES_NAME(lane_short_atan_, GIC_LANES)(gic_lane x)
+{
+    return (gic_lane)((gic_mask)LANE_SHORT_ARC(LANE_FABS(x)) ^ LANE_SIGN(x));
+}
+
+/* sin of |r| <= pi/2 */
+LANE_FUNCTION gic_lane GIC_LANES_NAME(lane_short_wave_, GIC_LANES)(gic_lane r)
+{
+    const gic_lane z = r * r, z2 = z * z;
+    const gic_lane share = (GIC_R(-0.1666666660646488) + z * GIC_R(0.008333330495615816)) +
+                           z2 * ((GIC_R(-0.00019840804033975252) + z * GIC_R(2.7522618643037596e-06)) +
+                                 z2 * GIC_R(-2.3846690894032753e-08));
+    return r + r * (z * share);
+}
+
+/* x - turns pi/2: products with the first part are exact within GIC_TURNING. */
+LANE_FUNCTION gic_lane GIC_LANES_NAME(lane_short_reduce_, GIC_LANES)(gic_lane x, gic_lane turns)
+{
+#ifdef GIC_FLOAT
+    const gic_real first = GIC_R(1.5703125), second = GIC_R(0.00048382679);
+#else
+    const gic_real first = GIC_R(1.5707963267341256), second = GIC_R(6.077100506506192e-11);
+#endif
+    return (x - turns * first) - turns * second;
+}
+
+LANE_FUNCTION gic_lane GIC_LANES_NAME(lane_short_sin_, GIC_LANES)(gic_lane x)
+{
+    const gic_mask inside = (gic_mask)(LANE_FABS(x) <= GIC_TURNING);
+    const gic_lane t = LANE_FABS(x) * GIC_R(0.3183098861837907) + GIC_ROUNDER, n = t - GIC_ROUNDER;
+    const gic_lane y = LANE_SHORT_WAVE(LANE_SHORT_REDUCE(LANE_FABS(x), n + n));
+    const gic_mask turned = (gic_mask)((gic_bits)t << GIC_SIGN_PLACE);
+    return LANE_MEND(~inside, GIC_MATH(sin), x, (gic_lane)((gic_mask)y ^ turned ^ LANE_SIGN(x)));
+}
+
+LANE_FUNCTION gic_lane GIC_LANES_NAME(lane_short_cos_, GIC_LANES)(gic_lane x)
+{
+    const gic_mask inside = (gic_mask)(LANE_FABS(x) <= GIC_TURNING);
+    const gic_lane t = (LANE_FABS(x) * GIC_R(0.3183098861837907) - GIC_R(0.5)) + GIC_ROUNDER, n = t - GIC_ROUNDER;
+    const gic_lane y = LANE_SHORT_WAVE(LANE_SHORT_REDUCE(LANE_FABS(x), n + n + GIC_R(1.0)));
+    const gic_mask turned = (gic_mask)(~(gic_bits)t << GIC_SIGN_PLACE);
+    return LANE_MEND(~inside, GIC_MATH(cos), x, (gic_lane)((gic_mask)y ^ turned));
+}
+
+LANE_FUNCTION gic_lane GIC_LANES_NAME(lane_short_tan_, GIC_LANES)(gic_lane x)
+{
+    const gic_mask inside = (gic_mask)(LANE_FABS(x) <= GIC_TURNING);
+    const gic_lane t = LANE_FABS(x) * GIC_R(0.6366197723675814) + GIC_ROUNDER;
+    const gic_lane r = LANE_SHORT_REDUCE(LANE_FABS(x), t - GIC_ROUNDER), z = r * r;
+    const gic_lane share = (GIC_R(-0.1666666662799899) + z * GIC_R(0.00833332823871198)) +
+                           z * z * (GIC_R(-0.00019839043769993145) + z * GIC_R(2.7160140145580568e-06));
+    const gic_lane more =
+        (GIC_R(0.041666646866526133) + z * GIC_R(-0.0013887367519608252)) + z * z * GIC_R(2.4438451991605413e-05);
+    const gic_lane sine = r + r * (z * share), cosine = GIC_R(1.0) - (z * GIC_R(0.5) - z * z * more);
+    /* an odd number of quarters: -1 / tan r */
+    const gic_mask odd = -(gic_mask)((gic_bits)t & 1);
+    const gic_lane y = LANE_SELECT(odd, -cosine, sine) / LANE_SELECT(odd, sine, cosine);
+    return LANE_MEND(~inside, GIC_MATH(tan), x, (gic_lane)((gic_mask)y ^ LANE_SIGN(x)));
+}
+
+/* sin(c atan x), |c| <= 2: of an angle a up to pi, or of pi - a. */
+LANE_FUNCTION gic_lane GIC_LANES_NAME(lane_short_sine_, GIC_LANES)(gic_real c, gic_lane x)
+{
+    const gic_lane a = GIC_MATH(fabs)(c) * LANE_SHORT_ARC(LANE_FABS(x)), other = GIC_HALF_PI + GIC_HALF_PI - a;
+    const gic_lane y = LANE_SHORT_WAVE(LANE_SELECT((gic_mask)(a > GIC_HALF_PI), other, a));
+    return (gic_lane)((gic_mask)(c < GIC_R(0.0) ? -y : y) ^ LANE_SIGN(x));
+}
+
+/* cos(c atan x), |c| <= 2 */
+LANE_FUNCTION gic_lane GIC_LANES_NAME(lane_short_cosine_, GIC_LANES)(gic_real c, gic_lane x)
+{
+    return LANE_SHORT_WAVE(GIC_HALF_PI - GIC_MATH(fabs)(c) * LANE_SHORT_ARC(LANE_FABS(x)));
 }
 
 /* ---- exp, tanh, log --------------------------------------------------------------------------------------------- */

@@ -56,7 +56,7 @@ static void write_contact(void *context, Text *out, int indent)
 static void write_tire(void *context, Text *out, int indent)
 {
     Expansion *x = context;
-    write_part(x, out, &x->class->tire, indent);
+    write_part(x, out, x->class->by_table.stores ? &x->class->by_table : &x->class->tire, indent);
 }
 
 static void write_balance(void *context, Text *out, int indent)

@@ -5,6 +5,7 @@
 #include "base/text.h"
 #include "emit/emit.h"
 #include "emit/emit_private.h"
+#include "expression/curve.h"
 #include "expression/expression.h"
 #include "gic_runtime.h"
 
@@ -330,6 +331,15 @@ static void write_text(Emitter *m, Text *line, Ex e, int strength)
     }
     if (node->op == OP_FRICTION_CHANGE) {
         write_friction_change(m, line, node);
+        return;
+    }
+    if (node->op == OP_CURVE && curve_is_short(&m->dag->curves->curve[node->arg[1]])) {
+        const Curve *curve = &m->dag->curves->curve[node->arg[1]];
+        text_print(line, "%s_SHORT_%s(", function_name(width_of(m, e)), short_curve_name(curve));
+        if (curve->kind == CURVE_SHORT_SINE || curve->kind == CURVE_SHORT_COSINE)
+            text_print(line, "%s, ", emit_number(m->dag->pool, curve->factor));
+        write_whole(m, line, node->arg[0], true, width_of(m, e));
+        text_print(line, ")");
         return;
     }
     if (node->op == OP_CURVE) {

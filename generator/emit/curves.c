@@ -22,6 +22,8 @@ static void write_curves(void *context, Text *out, int indent)
     const Curves *curves = g->formulation->wheels->curves;
     for (int i = 0; i < curves->count; ++i) {
         const Curve *curve = &curves->curve[i];
+        if (curve_is_short(curve))
+            continue;
         const char *model = g->model->name, *exact = name_of(g->pool, curve, "GIC_SIN", "GIC_COS", "GIC_ATAN");
         line(out, indent, "static const gic_real %s_curve_%d_cell[%d][%d] = {", model, i, curve->cells, CURVE_NUMBERS);
         for (int c = 0; c < curve->cells; ++c) {
@@ -52,6 +54,30 @@ static const Insertion curve_point[] = {{"curves", write_curves}, {NULL, NULL}};
 
 const Insertions curve_points = {(const char *const[]){"curves.c.in", NULL}, curve_point, NULL};
 
+bool has_table_curves(const Generation *g)
+{
+    const Curves *curves = g->formulation->wheels->curves;
+    bool any = false;
+    for (int i = 0; curves && i < curves->count; ++i)
+        any = any || !curve_is_short(&curves->curve[i]);
+    return any;
+}
+
+/* The tires of a class, between quotation marks; tires are numbered by the model. */
+static const char *tires_of(const Generation *g, const WheelClass *class)
+{
+    Text out = {.pool = g->pool};
+    int count = 0;
+    for (int t = 0; t < g->model->tires; ++t) {
+        bool has = false;
+        for (int i = 0; i < class->members; ++i)
+            has = has || g->model->wheel[class->member[i]].tire == t;
+        if (has)
+            text_print(&out, "%s'%s'", count++ ? ", " : "", g->model->tire[t].name);
+    }
+    return pool_print(g->pool, "%s %s", count > 1 ? "Tires" : "Tire", out.s);
+}
+
 void write_curve_error(const Generation *g, Text *out)
 {
     const Wheels *wheels = g->formulation->wheels;
@@ -59,10 +85,11 @@ void write_curve_error(const Generation *g, Text *out)
         const WheelClass *class = &wheels->class[c];
         if (class->by_table.stores)
             text_print(out,
-                       " * Tire '%s' by table (--tire-tables): forces off by at most %.1e of the load, moments of load "
-                       "times radius,\n * measured at %d places in the ranges of its data; where errors of all tables "
+                       " * %s by %s (--tire-tables): forces off by at most %.1e of the load, moments of load "
+                       "times radius,\n * measured at %d places in the ranges of its data; where errors of all %s "
                        "add up, at most %.1e, at %d\n * places. %.0e is the bound.\n *\n",
-                       g->model->tire[g->model->wheel[class->member[0]].tire].name, class->table_error,
-                       TIRE_TABLE_PLACES, class->table_bound, TIRE_TABLE_BOUND_PLACES, TIRE_TABLE_BOUND);
+                       tires_of(g, class), class->short_curves ? "short polynomials" : "table", class->table_error,
+                       TIRE_TABLE_PLACES, class->short_curves ? "polynomials" : "tables", class->table_bound,
+                       TIRE_TABLE_BOUND_PLACES, TIRE_TABLE_BOUND);
     }
 }

@@ -125,6 +125,8 @@ void write_initial(void *context, Text *out, int indent);
 /* curves.c: insertion point of curves.c.in, context: the Generation; lines about tires by table for the banner. */
 extern const Insertions curve_points;
 void write_curve_error(const Generation *g, Text *out);
+/* True if functions of tires are tables: not if all are short polynomials, which gic_lanes.h has. */
+bool has_table_curves(const Generation *g);
 /* polynomials.c: lines of the banner: which subsets have polynomials, with bound, degree and largest error found, and
  * why others have none; nothing where no subset has any. */
 void write_polynomials(const Generation *g, Text *out);

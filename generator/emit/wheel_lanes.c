@@ -27,11 +27,7 @@ static int find_computed(const Generation *g, const WheelClass *class, int *memb
 
 int wheel_lanes(const Generation *g, const WheelClass *class)
 {
-    const int members = find_computed(g, class, NULL);
-    int lanes = 1;
-    while (lanes < members && 2 * lanes <= g->plan->lanes)
-        lanes *= 2;
-    return lanes;
+    return wheel_class_lanes(g->formulation, class);
 }
 
 /* ---- types, and what wheels look up -------------------------------------------------------------------------------
@@ -222,7 +218,7 @@ static void write_contact(void *context, Text *out, int indent)
 static void write_tire(void *context, Text *out, int indent)
 {
     Expansion *x = context;
-    write_block(x, &x->class->tire, out, indent);
+    write_block(x, x->class->by_table.stores ? &x->class->by_table : &x->class->tire, out, indent);
 }
 
 static void write_balance(void *context, Text *out, int indent)

@@ -116,7 +116,7 @@ static void write_wheel_classes(void *context, Text *out, int indent)
     (void)indent;
     const Wheels *wheels = g->formulation->wheels;
     write_wheel_vectors(g, out);
-    if (wheels->curves)
+    if (has_table_curves(g))
         template_expand(g->pool, out, g->templates, "curves.c.in", g->model->name, NULL, &curve_points, g);
     for (int c = 0; c < wheels->classes; ++c) {
         const WheelClass *class = &wheels->class[c];

@@ -14,11 +14,11 @@
 enum { OCTAVE = 4, FIRST_EXPONENT = -2, DEGREE = 6, PLACES = 33 };
 
 /* The arc tangent by halving the angle twice and its series: within 4 units of the last place. */
-static double arc_tangent(double x)
+double curve_arc_tangent(double x)
 {
     const double quarter_turn = 1.57079632679489661923;
     if (x > 1)
-        return quarter_turn - arc_tangent(1 / x);
+        return quarter_turn - curve_arc_tangent(1 / x);
     for (int i = 0; i < 2; ++i)
         x /= 1 + sqrt(1 + x * x);
     double sum = 0;
@@ -33,11 +33,11 @@ static void curve_exact(const Curve *curve, double x, double *value, double *slo
     double sine, cosine;
     const double spread = 1 / (1 + x * x);
     if (curve->kind == CURVE_ATAN) {
-        *value = arc_tangent(x);
+        *value = curve_arc_tangent(x);
         *slope = spread;
         return;
     }
-    portable_sincos(curve->kind == CURVE_TAN ? x : curve->factor * arc_tangent(x), &sine, &cosine);
+    portable_sincos(curve->kind == CURVE_TAN ? x : curve->factor * curve_arc_tangent(x), &sine, &cosine);
     if (curve->kind == CURVE_SINE) {
         *value = sine;
         *slope = curve->factor * cosine * spread;
@@ -96,6 +96,8 @@ static void cell_fit(const Curve *curve, double begin, double end, double *cell)
 
 double curve_value(const Curve *curve, double x)
 {
+    if (curve_is_short(curve))
+        return short_curve_value(curve, x);
     const double a = fabs(x);
     double value, slope;
     if (!(a < curve_end(curve))) { /* not a number counts as beyond, too */
@@ -115,6 +117,10 @@ double curve_value(const Curve *curve, double x)
 
 void curve_make(Pool *pool, Curve *curve)
 {
+    if (curve_is_short(curve)) {
+        short_curve_make(curve);
+        return;
+    }
     curve->cells = curve->kind == CURVE_TAN ? 1 + 2 * OCTAVE : PLACES; /* up to 1, up to 64 */
     curve->cell = pool_alloc(pool, (size_t)curve->cells * sizeof *curve->cell);
     curve->error = 0;
@@ -148,33 +154,45 @@ static int curve_find(Pool *pool, Curves *curves, CurveKind kind, double factor)
     return curves->count - 1;
 }
 
+/* Is a node a literal times an arc tangent, or one alone? Sets the factor and the argument of the arc tangent. */
+static bool is_arc(const Dag *dag, Ex e, double *factor, Ex *argument)
+{
+    const Node *arc = &dag->node[e];
+    *factor = 1;
+    for (int i = 0; i < 2 && arc->op == OP_MUL; ++i)
+        if (dag->node[arc->arg[i]].op == OP_LITERAL && dag->node[arc->arg[1 - i]].op == OP_ATAN) {
+            *factor = ex_value(dag, arc->arg[i], 0);
+            arc = &dag->node[arc->arg[1 - i]];
+        }
+    *argument = arc->arg[0];
+    return arc->op == OP_ATAN;
+}
+
 /* The curve that a node is, and its argument; -1: none. */
-static int curve_of(Pool *pool, Curves *curves, const Dag *dag, Ex e, Ex *argument)
+static int curve_of(Pool *pool, Curves *curves, const Dag *dag, Ex e, bool lanes, Ex *argument)
 {
     const Node *node = &dag->node[e];
+    double factor;
     *argument = node->arg[0];
     if (node->level < LEVEL_VARIABLE)
         return -1;
     if (node->op == OP_ATAN)
-        return curve_find(pool, curves, CURVE_ATAN, 1);
+        return curve_find(pool, curves, lanes ? CURVE_SHORT_ATAN : CURVE_ATAN, 1);
     if (node->op == OP_TAN)
-        return curve_find(pool, curves, CURVE_TAN, 1);
+        return curve_find(pool, curves, lanes ? CURVE_SHORT_TAN : CURVE_TAN, 1);
     if (node->op != OP_SIN && node->op != OP_COS)
         return -1;
-    const Node *arc = &dag->node[node->arg[0]];
-    double factor = 1;
-    for (int i = 0; i < 2 && arc->op == OP_MUL; ++i)
-        if (dag->node[arc->arg[i]].op == OP_LITERAL && dag->node[arc->arg[1 - i]].op == OP_ATAN) {
-            factor = ex_value(dag, arc->arg[i], 0);
-            arc = &dag->node[arc->arg[1 - i]];
-        }
-    if (arc->op != OP_ATAN)
-        return -1;
-    *argument = arc->arg[0];
-    return curve_find(pool, curves, node->op == OP_SIN ? CURVE_SINE : CURVE_COSINE, factor);
+    const bool sine = node->op == OP_SIN, arc = is_arc(dag, node->arg[0], &factor, argument);
+    if (lanes && arc && fabs(factor) <= 2)
+        return curve_find(pool, curves, sine ? CURVE_SHORT_SINE : CURVE_SHORT_COSINE, factor);
+    if (lanes) {
+        *argument = node->arg[0];
+        return curve_find(pool, curves, sine ? CURVE_SHORT_SIN : CURVE_SHORT_COS, 1);
+    }
+    return arc ? curve_find(pool, curves, sine ? CURVE_SINE : CURVE_COSINE, factor) : -1;
 }
 
-Block block_with_curves(const Block *block, Curves *curves)
+Block block_with_curves(const Block *block, Curves *curves, bool lanes)
 {
     Dag *dag = block->dag;
     Pool *pool = dag->pool;
@@ -193,7 +211,7 @@ Block block_with_curves(const Block *block, Curves *curves)
         if (!needed[e] || node.level < LEVEL_VARIABLE || !ex_arity((Op)node.op))
             continue;
         Ex argument;
-        const int curve = curve_of(pool, curves, dag, e, &argument);
+        const int curve = curve_of(pool, curves, dag, e, lanes, &argument);
         if (curve >= 0) {
             image[e] = ex_op(dag, OP_CURVE, image[argument], (Ex)curve, 0);
             continue;

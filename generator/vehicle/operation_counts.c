@@ -139,3 +139,13 @@ bool narrowing_wheel_image(const Narrowing *narrowing, int wheel)
 {
     return narrowing && narrowing->wheel && narrowing->wheel[wheel] >= 0;
 }
+
+int wheel_class_lanes(const Formulation *formulation, const WheelClass *class)
+{
+    int members = 0, lanes = 1;
+    for (int i = 0; i < class->members; ++i)
+        members += !narrowing_wheel_image(formulation->narrowing, class->member[i]);
+    while (lanes < members && 2 * lanes <= formulation->plan->lanes)
+        lanes *= 2;
+    return lanes;
+}

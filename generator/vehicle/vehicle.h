@@ -221,6 +221,7 @@ typedef struct WheelClass {
     Block tire;         /* force[] of a wheel with load; without load force[] is 0 */
     Block balance;      /* rate[] of spin and brake; grip[] */
     Block by_table;     /* `tire` with curves; without stores: it has none */
+    bool short_curves;  /* these are short polynomials, for code in lanes */
     double table_error; /* of it, relative to load and radius, as measured */
     double table_bound; /* what the largest errors of all its curves add up to, to first order */
 } WheelClass;
@@ -360,11 +361,11 @@ void formulation_blocks(Pool *pool, Formulation *f);
 /* tire_tables.c: the formulation whose slip forces of Magic Formulas are found by tables, with TIRE_TABLE_BOUND as the
  * largest error of forces relative to the load, and of moments to load times radius; measured at TIRE_TABLE_PLACES,
  * and a message where half of the bound is exceeded, or the bound by what errors of curves add up to, or no tire has
- * such formulas. For scalar code; derivatives are those of
- * the formulas. */
+ * such formulas. Wheels that are computed in lanes, all of them with `batch`, get short polynomials in place of tables.
+ * Derivatives are those of the formulas. */
 #define TIRE_TABLE_BOUND 1e-6
 enum { TIRE_TABLE_PLACES = 40000, TIRE_TABLE_BOUND_PLACES = 1000 };
-const Formulation *formulation_tire_tables(Pool *pool, const Formulation *formulation);
+const Formulation *formulation_tire_tables(Pool *pool, const Formulation *formulation, bool batch);
 /* lanes.c: the number of lanes that a word names: 2, 4, 8 or 16; 0: any other word. */
 int lanes_of(const char *word);
 /* The formulation for code that solves members of a class side by side in vectors of up to `most` lanes, a power of 2:
@@ -500,5 +501,7 @@ struct Narrowing {
 bool narrowing_steady(const Narrowing *narrowing, int subset);
 bool narrowing_image(const Narrowing *narrowing, int subset);
 bool narrowing_wheel_image(const Narrowing *narrowing, int wheel);
+/* The number of lanes in which the wheels of a class are computed; 1: one after another. */
+int wheel_class_lanes(const Formulation *formulation, const WheelClass *class);
 
 #endif

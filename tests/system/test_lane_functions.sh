@@ -3,7 +3,8 @@
 # test_lane_functions.sh: the elementary functions of gic_lanes.h against quad precision (tests/data/lanes): every multiple of
 # pi/2 in the range and its neighbours, random arguments of all magnitudes, and special ones, within the bounds that the
 # header states; of either number type, with and without fused products, -ffast-math (which leaves out subnormal numbers
-# and infinities), by gcc and clang, C and C++.
+# and infinities), by gcc and clang, C and C++. The short polynomials likewise, within absolute bounds (tests/data/lanes/short.c);
+# their coefficients are those of Remez' exchange (short.py).
 root=$(cd "$(dirname "$0")/../.." && pwd)
 work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
@@ -49,6 +50,30 @@ for compiler in gcc clang; do
 done
 bounds 40000 all 16 g++ -std=c++11 -x c++ -O1
 bounds 40000 all 4 clang++ -std=c++11 -x c++ -O1 -DGIC_FLOAT
+
+# short COMPILER...: the short polynomials, for tires
+short() {
+    if "$@" -std=gnu11 -Wall -Wextra -Wno-psabi -Werror "-I$root/runtime" "$root/tests/data/lanes/short.c" -lquadmath -lm \
+        -o short >said 2>&1 && ./short >said 2>&1; then
+        passed=$((passed + 1))
+    else
+        failed=$((failed + 1))
+        echo "FAIL short polynomials: $*"
+        sed 's/^/    /' said | head -30
+    fi
+}
+short gcc -DLANES=4 -O2 -ffp-contract=off
+short gcc -DLANES=8 -O3 $native -ffp-contract=fast
+short gcc -DLANES=2 -O0
+short gcc -DLANES=16 -O2 -DGIC_FLOAT
+short gcc -DLANES=4 -O3 $native -DGIC_FLOAT
+# their coefficients, found once more
+if python3 "$root/tests/data/lanes/short.py" "$root/runtime/gic_lanes.h" "$root/generator/expression/short_curve.c" >said 2>&1; then
+    passed=$((passed + 1))
+else
+    failed=$((failed + 1))
+    cat said
+fi
 
 # a compiler without vectors is told so
 # shellcheck disable=SC2086
