@@ -134,21 +134,33 @@
 #define GIC_REAL_BYTES 4
 #define GIC_SIGNS_32(x) __builtin_ia32_movmskps256(x)
 #define GIC_ROOTS_32(x) __builtin_ia32_sqrtps256(x)
+#define GIC_LEAST_32(x, y) __builtin_ia32_minps256(x, y)
+#define GIC_MOST_32(x, y) __builtin_ia32_maxps256(x, y)
 #define GIC_SIGNS_64(x) __builtin_ia32_cvtd2mask512(x)
 #ifdef __clang__
 #define GIC_ROOTS_64(x) __builtin_ia32_sqrtps512(x, 4)
+#define GIC_LEAST_64(x, y) __builtin_ia32_minps512(x, y, 4)
+#define GIC_MOST_64(x, y) __builtin_ia32_maxps512(x, y, 4)
 #else
 #define GIC_ROOTS_64(x) __builtin_ia32_sqrtps512_mask(x, x, -1, 4)
+#define GIC_LEAST_64(x, y) __builtin_ia32_minps512_mask(x, y, x, -1, 4)
+#define GIC_MOST_64(x, y) __builtin_ia32_maxps512_mask(x, y, x, -1, 4)
 #endif
 #else
 #define GIC_REAL_BYTES 8
 #define GIC_SIGNS_32(x) __builtin_ia32_movmskpd256(x)
 #define GIC_ROOTS_32(x) __builtin_ia32_sqrtpd256(x)
+#define GIC_LEAST_32(x, y) __builtin_ia32_minpd256(x, y)
+#define GIC_MOST_32(x, y) __builtin_ia32_maxpd256(x, y)
 #define GIC_SIGNS_64(x) __builtin_ia32_cvtq2mask512(x)
 #ifdef __clang__
 #define GIC_ROOTS_64(x) __builtin_ia32_sqrtpd512(x, 4)
+#define GIC_LEAST_64(x, y) __builtin_ia32_minpd512(x, y, 4)
+#define GIC_MOST_64(x, y) __builtin_ia32_maxpd512(x, y, 4)
 #else
 #define GIC_ROOTS_64(x) __builtin_ia32_sqrtpd512_mask(x, x, -1, 4)
+#define GIC_LEAST_64(x, y) __builtin_ia32_minpd512_mask(x, y, x, 255, 4)
+#define GIC_MOST_64(x, y) __builtin_ia32_maxpd512_mask(x, y, x, 255, 4)
 #endif
 #endif
 #ifdef GIC_FLOAT
@@ -235,14 +247,54 @@ LANE_FUNCTION gic_lane GIC_LANES_NAME(lane_select_, GIC_LANES)(gic_mask m, gic_l
     return (gic_lane)((m & (gic_mask)yes) | (~m & (gic_mask)no));
 }
 
+/* The processor's instruction, where compilers would take four for a comparison and a selection: x where x < y, else y,
+ * which is what it does with NaN and zeros of both signs, too. */
 LANE_FUNCTION gic_lane GIC_LANES_NAME(lane_min_, GIC_LANES)(gic_lane x, gic_lane y)
 {
-    return LANE_SELECT((gic_mask)(x < y), x, y);
+    int l = 0;
+#ifdef __AVX512F__
+    for (; (l + 64 / GIC_REAL_BYTES) <= GIC_LANES; l += 64 / GIC_REAL_BYTES) {
+        gic_real a __attribute__((vector_size(64))), b __attribute__((vector_size(64)));
+        memcpy(&a, (const char *)&x + l * GIC_REAL_BYTES, sizeof a);
+        memcpy(&b, (const char *)&y + l * GIC_REAL_BYTES, sizeof b);
+        a = GIC_LEAST_64(a, b);
+        memcpy((char *)&x + l * GIC_REAL_BYTES, &a, sizeof a);
+    }
+#endif
+#ifdef __AVX__
+    for (; l + 32 / GIC_REAL_BYTES <= GIC_LANES; l += 32 / GIC_REAL_BYTES) {
+        gic_real a __attribute__((vector_size(32))), b __attribute__((vector_size(32)));
+        memcpy(&a, (const char *)&x + l * GIC_REAL_BYTES, sizeof a);
+        memcpy(&b, (const char *)&y + l * GIC_REAL_BYTES, sizeof b);
+        a = GIC_LEAST_32(a, b);
+        memcpy((char *)&x + l * GIC_REAL_BYTES, &a, sizeof a);
+    }
+#endif
+    return l < GIC_LANES ? LANE_SELECT((gic_mask)(x < y), x, y) : x;
 }
 
 LANE_FUNCTION gic_lane GIC_LANES_NAME(lane_max_, GIC_LANES)(gic_lane x, gic_lane y)
 {
-    return LANE_SELECT((gic_mask)(x > y), x, y);
+    int l = 0;
+#ifdef __AVX512F__
+    for (; (l + 64 / GIC_REAL_BYTES) <= GIC_LANES; l += 64 / GIC_REAL_BYTES) {
+        gic_real a __attribute__((vector_size(64))), b __attribute__((vector_size(64)));
+        memcpy(&a, (const char *)&x + l * GIC_REAL_BYTES, sizeof a);
+        memcpy(&b, (const char *)&y + l * GIC_REAL_BYTES, sizeof b);
+        a = GIC_MOST_64(a, b);
+        memcpy((char *)&x + l * GIC_REAL_BYTES, &a, sizeof a);
+    }
+#endif
+#ifdef __AVX__
+    for (; l + 32 / GIC_REAL_BYTES <= GIC_LANES; l += 32 / GIC_REAL_BYTES) {
+        gic_real a __attribute__((vector_size(32))), b __attribute__((vector_size(32)));
+        memcpy(&a, (const char *)&x + l * GIC_REAL_BYTES, sizeof a);
+        memcpy(&b, (const char *)&y + l * GIC_REAL_BYTES, sizeof b);
+        a = GIC_MOST_32(a, b);
+        memcpy((char *)&x + l * GIC_REAL_BYTES, &a, sizeof a);
+    }
+#endif
+    return l < GIC_LANES ? LANE_SELECT((gic_mask)(x > y), x, y) : x;
 }
 
 LANE_FUNCTION gic_lane GIC_LANES_NAME(lane_sqrt_, GIC_LANES)(gic_lane x)
@@ -488,12 +540,17 @@ LANE_FUNCTION gic_lane GIC_LANES_NAME(lane_small_asin_, GIC_LANES)(gic_lane x, g
 }
 
 /* Beyond 1/2 by the half-angle formula. */
+/* Where no lane asks for it, the root is left out. */
 LANE_FUNCTION gic_lane GIC_LANES_NAME(lane_asin_, GIC_LANES)(gic_lane x)
 {
     const gic_lane a = LANE_FABS(x);
     const gic_mask beyond = (gic_mask)(a > GIC_R(0.5));
-    const gic_lane z = LANE_SELECT(beyond, (GIC_R(1.0) - a) * GIC_R(0.5), a * a);
-    const gic_lane p = LANE_SMALL_ASIN(LANE_SELECT(beyond, LANE_SQRT(z), a), z);
+    gic_lane z = a * a, root = a;
+    if (LANE_ANY(beyond)) {
+        z = LANE_SELECT(beyond, (GIC_R(1.0) - a) * GIC_R(0.5), z);
+        root = LANE_SELECT(beyond, LANE_SQRT(z), a);
+    }
+    const gic_lane p = LANE_SMALL_ASIN(root, z);
     const gic_lane y = LANE_SELECT(beyond, GIC_HALF_PI - (p + p), p);
     return (gic_lane)((gic_mask)y ^ LANE_SIGN(x));
 }
@@ -655,6 +712,8 @@ LANE_FUNCTION gic_lane GIC_LANES_NAME(lane_tanh_, GIC_LANES)(gic_lane x)
     const gic_mask beyond = (gic_mask)(LANE_FABS(x) > GIC_R(20.0));
     const gic_lane a = LANE_SELECT(beyond, LANE(GIC_R(20.0)), LANE_FABS(x));
     gic_lane scale;
+    if (!LANE_ANY(~beyond))
+        return (gic_lane)((gic_mask)LANE(GIC_R(1.0)) ^ LANE_SIGN(x));
     const gic_lane y = LANE_GROWTH(a + a, &scale), e = scale * y + (scale - GIC_R(1.0));
     return (gic_lane)((gic_mask)(e / (e + GIC_R(2.0))) ^ LANE_SIGN(x));
 }

@@ -142,7 +142,8 @@ static void size_texts(Emitter *m)
             sum += own ? own : 1;
         }
         bool again = m->uses[e] > 1 && node->op != OP_ROAD_PART;
-        const bool alone = m->block->scheduled && are_chains(m->style) && node->op >= OP_SIN && node->op <= OP_ATAN2;
+        const bool function = (node->op >= OP_SIN && node->op <= OP_ATAN2) || node->op == OP_CURVE;
+        const bool alone = m->block->scheduled && are_chains(m->style) && function;
         const bool whole = again || alone || node->op == OP_ROAD || node->op == OP_ROAD_CHANGE;
         m->leaves[e] = whole || sum > m->style->leaves ? 0 : sum;
     }

@@ -206,7 +206,9 @@ static void write_block(Expansion *x, const Block *block, Text *out, int indent)
         naming.scope = SCOPE_WHEEL;
         style.naming = &naming;
     }
-    block_emit(out, block, &style, &x->constants, indent);
+    Block scheduled = *block; /* long chains of operations: those that do not wait for each other stand side by side */
+    scheduled.scheduled = true;
+    block_emit(out, &scheduled, &style, &x->constants, indent);
 }
 
 static void write_contact(void *context, Text *out, int indent)

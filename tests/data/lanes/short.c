@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * short.c: the short polynomials of gic_lanes.h against quad precision, in LANES lanes: absolute errors at random
  * arguments of all magnitudes, next to multiples of an eighth of a turn, and to 1, where atan changes its formula;
- * special arguments; a lane's result depends on its own argument alone. Exit status 1 where a bound is exceeded. */
+ * special arguments; LANE_MIN and LANE_MAX to the bit; a lane's result depends on its own argument alone. Exit status 1
+ * where a bound is exceeded. */
 #define GIC_LANES LANES
 #include "gic_lanes.h"
 
@@ -130,10 +131,34 @@ static bool specials_of(const Function *f, gic_real c)
     return good;
 }
 
+/* Is the smaller and the larger one of two what a comparison says, to the bit? */
+static bool of_two(void)
+{
+    const gic_real zero = 0;
+    const gic_real number[] = {zero, -zero, 1, -1, GIC_R(1.5), 1 / zero, -1 / zero, zero / zero};
+    enum { NUMBERS = sizeof number / sizeof *number };
+    bool good = true;
+    for (int i = 0; i < NUMBERS * NUMBERS; ++i)
+        for (int l = 0; l < LANES; ++l) {
+            gic_lane x, y;
+            for (int k = 0; k < LANES; ++k)
+                x[k] = (gic_real)k, y[k] = 2;
+            x[l] = number[i / NUMBERS], y[l] = number[i % NUMBERS];
+            const gic_lane least = LANE_MIN(x, y), most = LANE_MAX(x, y);
+            for (int k = 0; k < LANES; ++k) {
+                const gic_real a = x[k] < y[k] ? x[k] : y[k], b = x[k] > y[k] ? x[k] : y[k];
+                const gic_real got = least[k], other = most[k];
+                good = good && !memcmp(&a, &got, sizeof a) && !memcmp(&b, &other, sizeof b);
+            }
+        }
+    printf("minimum and maximum %s\n", good ? "right" : "wrong");
+    return good;
+}
+
 int main(void)
 {
     const gic_real factor[] = {1, 0, 2, -2, GIC_R(0.97505), GIC_R(1.7204), GIC_R(-1.3)};
-    bool good = true;
+    bool good = of_two();
     for (size_t i = 0; i < sizeof function / sizeof *function; ++i)
         for (size_t k = 0; k < (i < 4 ? 1 : sizeof factor / sizeof *factor); ++k)
             good = errors_of(&function[i], factor[k]) && specials_of(&function[i], factor[k]) && good;
