@@ -205,8 +205,8 @@ static Options read_options(int count, char **word)
         usage_error(options.formed ? "--solve is for code and --report" : "--recovery is for code and --report", NULL);
     if (options.batch.lanes && (!code || fmu))
         usage_error("--lanes is for code", NULL);
-    if (options.derivatives && !fmu && (options.task != TASK_GENERATE || options.batch.lanes || options.scene))
-        usage_error("--derivatives is for the code of one vehicle in any scene, without --batch, --lanes and --scene; "
+    if (options.derivatives && !fmu && (options.task != TASK_GENERATE || options.scene))
+        usage_error("--derivatives is for the code of one vehicle in any scene, without --batch and --scene; "
                     "vehicles of a batch have derivatives beside it (models/DERIVATIVES.md, Many vehicles)",
                     NULL);
     if (options.implicit && !fmu && (options.task != TASK_GENERATE || options.batch.lanes || options.scene))

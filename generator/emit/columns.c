@@ -124,7 +124,8 @@ static void write_calls(void *context, Text *out, int indent)
         const Class *class = &g->sequence->class[subset->class];
         line(out, indent, "/* stage %d: %s */", subset->stage, subset_title(g->pool, g->model, subset));
         for (int i = 0; i < subset->knowns; ++i) {
-            line(out, indent, "links.known[%d] = self->motion + %s;", i, body_motion_text(g, subset->known[i]));
+            line(out, indent, "links.known[%d] = %s + %s;", i, found_text(g, "motion"),
+                 body_motion_text(g, subset->known[i]));
             line(out, indent, "known[%d] = column + %d;", i,
                  g->columns[g->weighing]->offset[g->sequence->body_subset[subset->known[i]]]);
         }
@@ -137,11 +138,11 @@ static void write_calls(void *context, Text *out, int indent)
         if (block_reads(&g->columns[g->weighing]->motion[subset->class]->block, ARRAY_acc, 0))
             write_accelerations_of(g, out, indent, subset);
         line(out, indent,
-             "%s_%s_%s(%s_k_%s_%s[%d], &links, known, act, start + %d, self->motion + %s, "
-             "self->inertia + %s, column + %d);",
+             "%s_%s_%s(%s_k_%s_%s[%d], &links, known, act, start + %d, %s + %s, %s + %s, "
+             "column + %d);",
              g->model->name, columns_name(g), class->name, g->model->name, columns_name(g), class->name,
-             class_place(class, s), g->plan->start_offset[s], body_motion_text(g, subset->body[0]),
-             subset_inertia_text(g, s), g->columns[g->weighing]->offset[s]);
+             class_place(class, s), g->plan->start_offset[s], found_text(g, "motion"),
+             body_motion_text(g, subset->body[0]), found_text(g, "inertia"), subset_inertia_text(g, s), g->columns[g->weighing]->offset[s]);
     }
 }
 
@@ -312,6 +313,10 @@ static const Insertion class_point[] = {
 const Insertions columns_class_points = {(const char *const[]){"columns_class.c.in", NULL}, class_point, NULL};
 
 static const Insertion point[] = {{"columns classes", write_class_columns},
+                                  {"columns found motions", write_found_motions},
+                                  {"columns found inertias", write_found_inertias},
+                                  {"columns found start", write_found_start},
+                                  {"columns flat", write_flat_call},
                                   {"columns calls", write_calls},
                                   {"columns lanes", write_lanes},
                                   {"columns weighed lanes", write_weighed_lanes},

@@ -27,6 +27,8 @@ typedef struct Generation {
     bool weighing;        /* columns_of() are weighed */
     bool columns_made[2]; /* not weighed, weighed */
     const struct RateColumns *columns[2]; /* columns_of() */
+    const struct Generation *lanes;       /* flat.c: of derivatives beside code in lanes, that of the code; NULL: other */
+    struct Generation *single;            /* the derivatives of code in lanes, once they are asked for */
 } Generation;
 
 /* model_file.c: a checksum of the whole header, for g->pair. */
@@ -155,6 +157,19 @@ void write_tangent_code(void *context, Text *out, int indent);
 /* The blocks of tangents: of a class of subsets; of any other block. */
 const Block *class_tangent(const Generation *g, int class, bool still);
 const Block *whole_tangent(const Generation *g, const Block *block);
+/* flat.c: derivatives of code in lanes are computed one by one, from copies of what its recovery leaves in rows. The
+ * generation that writes them: of the formulation without lanes; other code's own. */
+Generation *one_by_one(Generation *g);
+/* Where derivatives find "motion", "inertia" or "start" of an instance: self->motion, or the copy. */
+const char *found_text(const Generation *g, const char *array);
+/* Insertion points: pointers to them; members of the instance, function and call that copy; nothing without lanes. */
+void write_found_motions(void *context, Text *out, int indent);
+void write_found_inertias(void *context, Text *out, int indent);
+void write_found_start(void *context, Text *out, int indent);
+void write_flat_members(void *context, Text *out, int indent);
+void write_flat(void *context, Text *out, int indent);
+void write_flat_call(void *context, Text *out, int indent);
+extern const Insertions flat_points;
 /* jacobian.c: the number of columns; sizes, a picture and tables of what may be other than 0. */
 int jacobian_columns(const Generation *g);
 /* [columns] those of parameters that change the geometry. */

@@ -349,6 +349,7 @@ static const Insertion header_point[] = {{"banner", write_banner},
                                          {"derived", write_derived},
                                          {"contacts", write_contact_member},
                                          {"implicit", write_implicit_members},
+                                         {"flat members", write_flat_members},
                                          {"places", write_places},
                                          {"tangent", write_tangent_header},
                                          {NULL, NULL}};
@@ -733,7 +734,8 @@ static void check_templates(Pool *pool, const char *templates)
                                         &states_points,        &states_rate_points,    &tangent_points,
                                         &tangent_class_points, &tangent_header_points, &columns_points,
                                         &columns_class_points, &columns_wheels_points, &columns_wheel_points,
-                                        &implicit_points,      &curve_points,          NULL};
+                                        &implicit_points,      &curve_points,          &flat_points,
+                                        NULL};
     templates_check(pool, templates, points);
 }
 

@@ -232,7 +232,7 @@ static void write_links(Generation *g, Text *out, int indent, int s)
     const Subset *subset = &g->sequence->subset[s];
     for (int i = 0; i < subset->knowns; ++i) {
         const char *place = body_motion_text(g, subset->known[i]);
-        line(out, indent, "links.known[%d] = self->motion + %s;", i, place);
+        line(out, indent, "links.known[%d] = %s + %s;", i, found_text(g, "motion"), place);
         line(out, indent, "dlinks.known[%d] = along->motion + %s;", i, place);
     }
     for (int j = 0; j < subset->deps; ++j) {
@@ -299,10 +299,10 @@ static void write_calls(void *context, Text *out, int indent)
         write_stillness(g, out, indent, s);
         line(out, follows_own(g, subset) ? indent + 4 : indent,
              "%s_tangent_solve_%s(still, %s_k_tangent_%s[%d], &links, &dlinks, start + %d, along->start + %d, "
-             "self->motion + %s, self->inertia + %s, along->motion + %s, along->inertia + %s);",
+             "%s + %s, %s + %s, along->motion + %s, along->inertia + %s);",
              g->model->name, class->name, g->model->name, class->name, class_place(class, s), offset, offset,
-             body_motion_text(g, subset->body[0]), subset_inertia_text(g, s), body_motion_text(g, subset->body[0]),
-             subset_inertia_text(g, s));
+             found_text(g, "motion"), body_motion_text(g, subset->body[0]), found_text(g, "inertia"),
+             subset_inertia_text(g, s), body_motion_text(g, subset->body[0]), subset_inertia_text(g, s));
     }
 }
 
@@ -330,11 +330,10 @@ static void write_react_calls_along(void *context, Text *out, int indent)
                 line(out, indent, "onto[%d] = spare, donto[%d] = dspare;", i, i);
         }
         line(out, indent,
-             "%s_tangent_react_%s(%s_k_tangent_%s[%d], &links, &dlinks, start + %d, along->start + %d, self->motion + "
-             "%s, "
+             "%s_tangent_react_%s(%s_k_tangent_%s[%d], &links, &dlinks, start + %d, along->start + %d, %s + %s, "
              "along->motion + %s, lambda + %d, dlambda + %d, onto, donto);",
-             g->model->name, class->name, g->model->name, class->name, class_place(class, s), factors, factors, motion,
-             motion, own, own);
+             g->model->name, class->name, g->model->name, class->name, class_place(class, s), factors, factors,
+             found_text(g, "motion"), motion, motion, own, own);
     }
 }
 
@@ -540,6 +539,11 @@ const Insertions tangent_class_points = {
     (const char *const[]){"tangent_class.c.in", "tangent_react.c.in", "tangent_wheel.c.in", NULL}, class_point, NULL};
 
 static const Insertion tangent_point[] = {{"tangent slopes", write_slopes},
+                                          {"tangent motions", write_found_motions},
+                                          {"tangent inertias", write_found_inertias},
+                                          {"tangent start", write_found_start},
+                                          {"flat", write_flat},
+                                          {"tangent flat", write_flat_call},
                                           {"table slope", write_table_slope},
                                           {"road change", write_road_change},
                                           {"friction change", write_friction_change},
@@ -585,7 +589,7 @@ bool has_tangents(Generation *g)
 
 void write_tangent_code(void *context, Text *out, int indent)
 {
-    Generation *g = context;
+    Generation *g = one_by_one(context);
     (void)indent;
     if (has_tangents(g))
         expand(g, out, "tangent.c.in");
@@ -615,7 +619,7 @@ const Insertions tangent_header_points = {(const char *const[]){"tangent.h.in", 
 
 void write_tangent_header(void *context, Text *out, int indent)
 {
-    Generation *g = context;
+    Generation *g = one_by_one(context);
     (void)indent;
     if (has_tangents(g))
         template_expand(g->pool, out, g->templates, "tangent.h.in", g->model->name, NULL, &tangent_header_points, g);

@@ -137,6 +137,7 @@ static void write_drive_along(void *context, Text *out, int indent)
 }
 
 static const Insertion wheels_point[] = {{"columns wheel classes", write_wheel_classes},
+                                         {"columns found motions", write_found_motions},
                                          {"columns torques", write_torques},
                                          {"columns link", write_link},
                                          {"columns torque", write_torque},

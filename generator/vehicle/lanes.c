@@ -362,9 +362,10 @@ const Formulation *formulation_lanes(Pool *pool, const Formulation *formulation,
 {
     Formulation *f = pool_alloc(pool, sizeof *f);
     Plan *plan = plan_lanes(pool, formulation->plan, formulation->narrowing, most);
+    *f = *formulation;
+    f->plan = plan;
+    f->single = formulation;
     if (formulation->narrowing) {
-        *f = *formulation;
-        f->plan = plan;
         move_blocks(pool, f, formulation->plan);
         plant_stores(f, "lanes");
         return f;
@@ -378,8 +379,6 @@ const Formulation *formulation_lanes(Pool *pool, const Formulation *formulation,
     for (int s = 0; s < plan->sequence->subsets; ++s)
         for (int i = 0; i < plan->sequence->subset[s].coordinates; ++i)
             plan->coordinate_track[plan->sequence->subset[s].coordinate[i]] = tracks.of[s];
-    *f = *formulation;
-    f->plan = plan;
     formulation_blocks(pool, f);
     if (f->wheels)
         f->wheels = wheels_merge(pool, f->wheels);

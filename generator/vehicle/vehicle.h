@@ -342,6 +342,7 @@ typedef struct Formulation {
     int known_most, dependence_most;   /* largest numbers of knowns and of deps of a subset */
     const Narrowing *narrowing;        /* code for one scene; NULL: for any scene */
     const struct Formulation *general; /* code for one scene: the formulation for any scene; NULL: this is it */
+    const struct Formulation *single;  /* code in lanes: the formulation without them; NULL: this has none */
 } Formulation;
 
 /* The formulas of an assembled model. The articulated form uses a chained sequence. Models that can't be formulated end

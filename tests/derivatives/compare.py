@@ -1,9 +1,11 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""compare.py GICGEN MODEL [-n ROWS] [--states CSV] [--option=OPTION] [--wave] [--npz IN OUT [--but INPUT]]
-[--matrices CSV OUT]: derivatives of rates and outputs by the code of `gicgen --derivatives`, by tangents and by the
+"""compare.py GICGEN MODEL [-n ROWS] [--states CSV] [--option=OPTION] [--wave] [--lanes W] [--npz IN OUT
+[--but INPUT]] [--matrices CSV OUT]: derivatives of rates and outputs by the code of `gicgen --derivatives`, by tangents and by the
 jacobian, against the very same code computed with dual numbers in C++ (dual_real.hpp), by every state, input, parameter
 and number of a port, at the design and at ROWS (5) random states beside it, or at those of a file of tests/tools/states.
+
+--lanes W: the derivatives are those of code in lanes, the dual numbers are over code without them.
 
 --matrices CSV OUT: instead, at the states of such a file the matrices of small motions, by the jacobian, as
 tests/tools/linearized prints them, for quad_linear.
@@ -41,6 +43,7 @@ npz = option("--npz", 2, None)
 states_file = option("--states", 1, [None])[0]
 matrices = option("--matrices", 2, None)
 left_out = option("--but", 1, [])
+lanes = option("--lanes", 1, [])
 wave = ["0.05", "5"] if option("--wave", 0, None) is not None else []
 options = [word[9:] for word in words if word.startswith("--option=")]
 gicgen, model = [word for word in words if not word.startswith("--")]
@@ -48,7 +51,8 @@ gicgen, model = [word for word in words if not word.startswith("--")]
 
 def build(folder, dual):
     """The program of program.c with the code of the model."""
-    subprocess.run([gicgen, *([] if dual else ["--derivatives"]), *[w for o in options for w in o.split("=")], model, "-o",
+    subprocess.run([gicgen, *([] if dual else ["--derivatives", *(["--lanes", *lanes] if lanes else [])]),
+                    *[w for o in options for w in o.split("=")], model, "-o",
                     f"{folder}/code.c"], check=True, stderr=subprocess.DEVNULL)
     with open(f"{folder}/code.h", encoding="utf-8") as file:
         header = file.read()
