@@ -142,7 +142,8 @@ static void write_calls(void *context, Text *out, int indent)
              "column + %d);",
              g->model->name, columns_name(g), class->name, g->model->name, columns_name(g), class->name,
              class_place(class, s), g->plan->start_offset[s], found_text(g, "motion"),
-             body_motion_text(g, subset->body[0]), found_text(g, "inertia"), subset_inertia_text(g, s), g->columns[g->weighing]->offset[s]);
+             body_motion_text(g, subset->body[0]), found_text(g, "inertia"), subset_inertia_text(g, s),
+             g->columns[g->weighing]->offset[s]);
     }
 }
 

@@ -24,7 +24,7 @@ typedef struct Style {
     int leaves;              /* in one expression at most, a function's name counted as one: also bounds its nesting */
     bool doubles;            /* literals are doubles: 0.5; else of either number type: R(0.5) */
     bool whole_self_test;    /* false: the self-test measures constraints alone */
-    bool derivatives;        /* the file has functions for derivatives too; not with lanes, nor for one scene */
+    bool derivatives;        /* the file has functions for derivatives too; not for one scene */
     bool implicit;           /* what implicit steps need; the same */
     bool exact;              /* with `implicit`: for integrators of a host, which want the Jacobian of accelerations */
     bool lanes;              /* numbers are vectors; a check that fails closes its lanes, and the function goes on */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Derivatives of code in lanes. The recovery leaves the numbers of alike subsets in rows, which their blocks would have
- * to be written anew for; so derivatives are those of the formulation without lanes, and an instance has copies of these
- * numbers, in the order of that formulation. */
+ * to be written anew for; so derivatives are those of the formulation without lanes, and an instance has copies of
+ * these numbers, in the order of that formulation. */
 #include "base/text.h"
 #include "emit/emit.h"
 #include "emit/emit_private.h"
@@ -71,7 +71,8 @@ void write_flat_members(void *context, Text *out, int indent)
     const Generation *g = context;
     if (!g->formulation->single || !g->style->derivatives)
         return;
-    line(out, indent, "/* for derivatives: copies of motion, inertia and start, subset by subset */");
+    line(out, indent,
+         "/* for derivatives, which are computed one by one: copies of motion, inertia and start without lanes */");
     line(out, indent, "gic_real flat_motion[%s_MOTION_ROOM], flat_inertia[%s_INERTIA_ROOM], flat_start[%s_START_ROOM];",
          g->upper, g->upper, g->upper);
 }
@@ -112,8 +113,7 @@ static void write_inertias(void *context, Text *out, int indent)
         const Subset *subset = &g->sequence->subset[s];
         if (subset->class >= 0)
             write_entry(out, indent, rows->inertia_offset[s], rows->stride[s], g->plan->inertia_offset[s],
-                        g->plan->formula[subset->class]->layout.inertia_size,
-                        subset_title(g->pool, g->model, subset));
+                        g->plan->formula[subset->class]->layout.inertia_size, subset_title(g->pool, g->model, subset));
     }
     write_end(out, indent);
 }
@@ -132,10 +132,8 @@ static void write_starts(void *context, Text *out, int indent)
     write_end(out, indent);
 }
 
-static const Insertion point[] = {{"flat motions", write_motions},
-                                  {"flat inertias", write_inertias},
-                                  {"flat starts", write_starts},
-                                  {NULL, NULL}};
+static const Insertion point[] = {
+    {"flat motions", write_motions}, {"flat inertias", write_inertias}, {"flat starts", write_starts}, {NULL, NULL}};
 
 const Insertions flat_points = {(const char *const[]){"flat.c.in", NULL}, point, NULL};
 
