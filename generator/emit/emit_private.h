@@ -27,8 +27,8 @@ typedef struct Generation {
     bool weighing;        /* columns_of() are weighed */
     bool columns_made[2]; /* not weighed, weighed */
     const struct RateColumns *columns[2]; /* columns_of() */
-    const struct Generation *lanes;       /* flat.c: of derivatives beside code in lanes, that of the code; NULL: other */
-    struct Generation *single;            /* the derivatives of code in lanes, once they are asked for */
+    const struct Generation *lanes; /* flat.c: of derivatives beside code in lanes, that of the code; NULL: other */
+    struct Generation *single;      /* the derivatives of code in lanes, once they are asked for */
 } Generation;
 
 /* model_file.c: a checksum of the whole header, for g->pair. */
