@@ -63,7 +63,7 @@ same_run() {
 for model in hmmwv hmmwv_vehicle hatchback; do
     check "$model: code" code "$model"
     check "$model: backwards as forwards" both_ways gcc "$model"
-    check "$model: backwards as forwards, clang" both_ways clang "$model"
+    [ "$model" = hatchback ] || check "$model: backwards as forwards, clang" both_ways clang "$model"
 done
 check 'hmmwv: a run' same_run gcc hmmwv 40 0.002 1e-13
 check 'hmmwv: a run, clang' same_run clang hmmwv 40 0.002 1e-13
