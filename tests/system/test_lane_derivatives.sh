@@ -48,7 +48,7 @@ both_ways() {
 } >"$work/said" 2>&1
 # whole FOLDER COMPILER MODEL STEPS STEP TOLERANCE [FLAG]: slopes in FOLDER/slopes
 whole() {
-    "$2" -std=c99 -O1 -w -Wno-psabi ${7:+"$7"} "-I$work/$1" "-I$runtime" "-DMODEL=$3" "-DCODE=\"$3.c\"" \
+    "$2" -std=c99 -O0 -w -Wno-psabi ${7:+"$7"} "-I$work/$1" "-I$runtime" "-DMODEL=$3" "-DCODE=\"$3.c\"" \
         "$programs/whole_run.c" "$runtime/gic_runtime.c" "$runtime/gic_gradient.c" -o "$work/whole" -lm &&
         "$work/whole" "$4" "$5" "$6" >"$work/$1/slopes"
 } 2>"$work/said"
