@@ -46,6 +46,7 @@ static const char usage[] =
     "  --derivatives    code with functions for derivatives of rates and outputs too; units of FMI with directional\n"
     "                   derivatives\n"
     "  --implicit       code that takes implicit steps too, for stiff models (models/STIFF.md); units of FMI\n"
+    "  --spread-jacobian  with --implicit: steps that keep a Jacobian may share the work of the next\n"
     "                   likewise\n"
     "  --tire-tables    Magic Formulas by table, in lanes by short polynomials, within 1e-6 of a wheel's load:\n"
     "                   quicker (models/TIRES.md)\n"
@@ -79,7 +80,7 @@ typedef struct Options {
     int fmi;                                               /* version of an FMU */
     const char *model, *scene, *output, *page, *templates; /* page: of --graph or --report; scene: NULL: none */
     bool formed, recovered;                                /* are `solve` and `recovery` given? */
-    bool derivatives, implicit, tire_tables;
+    bool derivatives, implicit, spread, tire_tables;
 } Options;
 
 static _Noreturn void usage_error(const char *message, const char *word)
@@ -161,6 +162,7 @@ static Options read_options(int count, char **word)
         {"scene", .text = &options.scene},
         {"derivatives", .on = &options.derivatives},
         {"implicit", .on = &options.implicit},
+        {"spread-jacobian", .on = &options.spread},
         {"tire-tables", .on = &options.tire_tables},
         {"templates", .text = &options.templates},
         {"main", .on = &main_program},
@@ -209,6 +211,8 @@ static Options read_options(int count, char **word)
         usage_error("--derivatives is for the code of one vehicle in any scene, without --batch and --scene; "
                     "vehicles of a batch have derivatives beside it (models/DERIVATIVES.md, Many vehicles)",
                     NULL);
+    if (options.spread && (!options.implicit || fmu))
+        usage_error("it goes with --implicit, for the code of one vehicle", "--spread-jacobian");
     if (options.implicit && !fmu && (options.task != TASK_GENERATE || options.batch.lanes || options.scene))
         usage_error("--implicit is for an FMU and the code of one vehicle in any scene, without --batch, --lanes and "
                     "--scene",
@@ -266,6 +270,7 @@ static void write_code(Pool *pool, const Model *model, const Sequence *sequence,
     Style style = style_readable;
     style.derivatives = options->derivatives;
     style.implicit = options->implicit;
+    style.spread = options->spread;
     bool batch = options->task == TASK_BATCH;
     const char *path = options->output ? options->output : pool_print(pool, batch ? "%s_batch.c" : "%s.c", model->name);
     if (strcmp(path, "-") && !path_ends(path, ".c"))

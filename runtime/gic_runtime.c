@@ -261,12 +261,13 @@ typedef struct Implicit {
     gic_implicit_head *head;
     int32_t n, m; /* states, unknowns */
     int32_t *pivot;
-    gic_real *jacobian;          /* [n][columns] */
-    gic_real *mass;              /* [mass_count] */
-    gic_real *factor;            /* [m][m] */
-    gic_real *increment;         /* [MOST_STAGES][n] u_i */
-    gic_real *stage, *b, *drift; /* [n] */
-    gic_real *change;            /* [columns] of inputs */
+    gic_real *jacobian;             /* [n][columns] */
+    gic_real *mass;                 /* [mass_count] */
+    gic_real *factor;               /* [m][m] */
+    gic_real *increment;            /* [MOST_STAGES][n] u_i */
+    gic_real *stage, *b, *drift;    /* [n] */
+    gic_real *change;               /* [columns] of inputs */
+    gic_real *other, *other_factor; /* Jacobian and factors that are being made in shares; NULL: the model has none */
 } Implicit;
 
 static Implicit implicit_of(const gic_model *model, void *self)
@@ -286,6 +287,19 @@ static Implicit implicit_of(const gic_model *model, void *self)
     w.b = w.stage + w.n;
     w.drift = w.b + w.n;
     w.change = w.drift + w.n;
+    w.other = w.other_factor = NULL;
+    if (how->share_count > 0) {
+        w.other = w.change + how->columns;
+        w.other_factor = w.other + w.n * how->columns + how->mass_count;
+    }
+    if (how->share_count > 0 && w.head->second) {
+        gic_real *const first = w.jacobian, *const first_factor = w.factor;
+        w.jacobian = w.other;
+        w.mass = w.jacobian + w.n * how->columns;
+        w.factor = w.other_factor;
+        w.other = first;
+        w.other_factor = first_factor;
+    }
     return w;
 }
 
@@ -409,33 +423,90 @@ static void implicit_solve(const Implicit *w, gic_real reach, gic_real *u)
     }
 }
 
-/* Jacobian and factors for a step from this state, those that are kept or new ones. */
-static int implicit_prepare(const Implicit *w, void *self, gic_real time, int32_t method, const gic_real *from,
-                            gic_real reach)
+/* Factors where the order that is known beforehand does not do: GIC_OK or GIC_ERROR_PIVOT. */
+static int implicit_exchange(const Implicit *w, void *self, gic_real reach)
 {
-    gic_head *head = (gic_head *)self;
-    if (w->head->used > 0 && w->head->used < w->head->keep && w->head->reach == reach && head->method == method &&
-        head->steps > 0) {
-        ++w->head->used;
-        return GIC_OK;
+    implicit_matrix(w, reach);
+    const int32_t lost = implicit_factorize(w);
+    if (lost >= 0)
+        ((gic_head *)self)->grown = lost;
+    return lost >= 0 ? GIC_ERROR_PIVOT : GIC_OK;
+}
+
+/* True while each step makes a share of the next Jacobian. */
+static int is_spread(const Implicit *w)
+{
+    return w->other && w->head->spread > 0 && w->head->keep > 1;
+}
+
+/* The share of this step, one of those that the present Jacobian still serves, of what is left to do. */
+static int implicit_share(const Implicit *w, void *self, gic_real time, const gic_real *from, gic_real reach)
+{
+    const gic_implicit *how = w->how;
+    const int32_t first = w->head->shared, left = w->head->keep - w->head->used + 1;
+    const int32_t before = first > 0 ? how->share_work[first - 1] : 0;
+    const int32_t work = how->share_work[how->share_count - 1] - before;
+    int32_t end = first;
+    for (int32_t done = before; end < how->share_count; ++end) { /* to the nearest piece */
+        const int32_t then = how->share_work[end];
+        if (left > 1 && (done - before) + (then - done) / 2 > work / left)
+            break;
+        done = then;
     }
-    w->head->used = 0;
+    if (first == end || w->head->lost)
+        return GIC_OK;
+    w->head->shared = end;
+    const int status = how->share(self, time, from, first, end, reach, w->other, w->other_factor);
+    w->head->lost = status == GIC_SHARE_LOST;
+    return w->head->lost ? GIC_OK : status;
+}
+
+/* The Jacobian that steps have made takes the place of the present one. */
+static int implicit_change(Implicit *w, const gic_model *model, void *self, gic_real reach)
+{
+    w->head->second = !w->head->second;
+    w->head->exchanged = w->head->lost;
+    w->head->shared = w->head->lost = 0;
+    w->head->used = 1;
     ++w->head->jacobian_count;
-    const int status = w->how->jacobian(self, time, from, w->jacobian);
+    *w = implicit_of(model, self);
+    return w->head->exchanged ? implicit_exchange(w, self, reach) : GIC_OK;
+}
+
+/* The whole Jacobian at once, with its factors. */
+static int implicit_begin(const Implicit *w, void *self, gic_real time, const gic_real *from, gic_real reach)
+{
+    w->head->used = w->head->shared = w->head->lost = 0;
+    ++w->head->jacobian_count;
+    int status = w->how->jacobian(self, time, from, w->jacobian);
     if (status != GIC_OK)
         return status;
     w->head->exchanged = !w->how->factorize || !w->how->factorize(w->jacobian, reach, w->factor);
-    if (w->head->exchanged) {
-        implicit_matrix(w, reach);
-        const int32_t lost = implicit_factorize(w);
-        if (lost >= 0) {
-            head->grown = lost;
-            return GIC_ERROR_PIVOT;
-        }
-    }
+    if (w->head->exchanged)
+        status = implicit_exchange(w, self, reach);
+    if (status != GIC_OK)
+        return status;
+    for (int32_t i = 0; is_spread(w) && i < w->n * w->how->columns; ++i) /* pieces set what is not 0 */
+        w->other[i] = GIC_R(0.0);
     w->head->reach = reach;
     w->head->used = 1;
     return GIC_OK;
+}
+
+/* Jacobian and factors for a step from this state, those that are kept or new ones. */
+static int implicit_prepare(Implicit *w, const gic_model *model, void *self, gic_real time, int32_t method,
+                            const gic_real *from, gic_real reach)
+{
+    const gic_head *head = (const gic_head *)self;
+    const int on = w->head->used > 0 && w->head->reach == reach && head->method == method && head->steps > 0;
+    int status = GIC_OK;
+    if (on && w->head->used < w->head->keep)
+        ++w->head->used;
+    else if (on && is_spread(w) && (w->head->lost || w->head->shared == w->how->share_count))
+        status = implicit_change(w, model, self, reach);
+    else
+        return implicit_begin(w, self, time, from, reach);
+    return status == GIC_OK && is_spread(w) ? implicit_share(w, self, time, from, reach) : status;
 }
 
 /* What the inputs change within a step, in drift[]: B du, or W B du. Inputs are those of `time` afterwards. */
@@ -460,9 +531,9 @@ static int rosenbrock(const gic_model *model, void *self, gic_real time, gic_rea
                       const gic_real *from, const gic_real *rate, gic_real *next)
 {
     const Rosenbrock *r = method == GIC_ROS3 ? &ros3 : &ros2;
-    const Implicit w = implicit_of(model, self);
+    Implicit w = implicit_of(model, self);
     const gic_real reach = r->gamma * step;
-    int status = implicit_prepare(&w, self, time, method, from, reach);
+    int status = implicit_prepare(&w, model, self, time, method, from, reach);
     if (status != GIC_OK)
         return status;
     implicit_drift(model, self, &w, time, step);
@@ -515,9 +586,9 @@ static gic_real *last_change(const Implicit *w)
 static int imex(const gic_model *model, void *self, gic_real time, gic_real step, const gic_real *from,
                 const gic_real *rate, const gic_real *past, gic_real *next)
 {
-    const Implicit w = implicit_of(model, self);
+    Implicit w = implicit_of(model, self);
     const gic_real part = GIC_R(0.66666666666666663), reach = part * step, *const last = last_change(&w);
-    const int status = implicit_prepare(&w, self, time, GIC_IMEX, from, reach);
+    const int status = implicit_prepare(&w, model, self, time, GIC_IMEX, from, reach);
     if (status != GIC_OK)
         return status;
     for (int32_t i = 0; i < w.n; ++i)

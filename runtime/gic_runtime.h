@@ -217,6 +217,11 @@ typedef struct gic_implicit_head {
     int32_t used;      /* steps made with the present factors; 0: there are none */
     int32_t exchanged; /* the present factors are the runtime's own, with rows exchanged */
     gic_real reach;    /* gamma * step, s, of the factors */
+    int32_t spread; /* for the caller, with code that has gic_implicit.share: 1: while a Jacobian serves `keep` steps,
+                     * each of them makes its share of the next one */
+    int32_t shared; /* pieces of the next one that are made */
+    int32_t lost;   /* the next one's factors need rows exchanged */
+    int32_t second; /* the present Jacobian stands in the second of two places */
     int64_t jacobian_count; /* Jacobians evaluated and factorized */
 } gic_implicit_head;
 
@@ -243,7 +248,18 @@ typedef struct gic_implicit {
     int32_t mass_count;
     const int32_t *mass_row, *mass_column; /* [mass_count] indices in state[], row by row; the matrix is symmetric,
                                             * and its whole diagonal is among its entries */
+    /* Code of gicgen --spread-jacobian: pieces `first` to end - 1 of Jacobian and factors, in a place where the whole
+     * was made before or that was 0; just after the rates of this state were computed, which may be another one for
+     * each piece. GIC_SHARE_LOST: a pivot is too small. share_work: the work of all pieces up to each. Behind the
+     * numbers of other models stand those of a second Jacobian, masses and factors, then what pieces leave to others.
+     */
+    int32_t share_count; /* 0: there are none */
+    const int32_t *share_work;
+    int (*share)(void *self, gic_real time, const gic_real *state, int32_t first, int32_t end, gic_real reach,
+                 gic_real *jacobian, gic_real *factor);
 } gic_implicit;
+
+#define GIC_SHARE_LOST 1
 
 #define GIC_IMPLICIT(n, columns) ((n) * ((columns) + (n) + 7) + (columns))
 

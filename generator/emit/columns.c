@@ -114,37 +114,40 @@ static void write_accelerations_of(const Generation *g, Text *out, int indent, c
     }
 }
 
+void write_columns_call(Generation *g, Text *out, int indent, int s)
+{
+    const Subset *subset = &g->sequence->subset[s];
+    if (subset->class < 0 || !g->columns[g->weighing]->motion[subset->class]->size)
+        return;
+    const Class *class = &g->sequence->class[subset->class];
+    line(out, indent, "/* stage %d: %s */", subset->stage, subset_title(g->pool, g->model, subset));
+    for (int i = 0; i < subset->knowns; ++i) {
+        line(out, indent, "links.known[%d] = %s + %s;", i, found_text(g, "motion"),
+             body_motion_text(g, subset->known[i]));
+        line(out, indent, "known[%d] = column + %d;", i,
+             g->columns[g->weighing]->offset[g->sequence->body_subset[subset->known[i]]]);
+    }
+    for (int j = 0; j < subset->deps; ++j) {
+        const char *index = coordinate_text(g->pool, g->style->naming, subset->dep[j]);
+        line(out, indent, "links.x[%d] = self->x[%s], links.rate[%d] = self->xd[%s];", j, index, j, index);
+    }
+    if (g->plan->formula[subset->class]->derived)
+        line(out, indent, "links.derived = self->derived + %d;", g->plan->derived_offset[s]);
+    if (block_reads(&g->columns[g->weighing]->motion[subset->class]->block, ARRAY_acc, 0))
+        write_accelerations_of(g, out, indent, subset);
+    line(out, indent,
+         "%s_%s_%s(%s_k_%s_%s[%d], &links, known, act, start + %d, %s + %s, %s + %s, "
+         "column + %d);",
+         g->model->name, columns_name(g), class->name, g->model->name, columns_name(g), class->name,
+         class_place(class, s), g->plan->start_offset[s], found_text(g, "motion"), body_motion_text(g, subset->body[0]),
+         found_text(g, "inertia"), subset_inertia_text(g, s), g->columns[g->weighing]->offset[s]);
+}
+
 static void write_calls(void *context, Text *out, int indent)
 {
     Generation *g = context;
-    for (int s = 0; s < g->sequence->subsets; ++s) {
-        const Subset *subset = &g->sequence->subset[s];
-        if (subset->class < 0 || !g->columns[g->weighing]->motion[subset->class]->size)
-            continue;
-        const Class *class = &g->sequence->class[subset->class];
-        line(out, indent, "/* stage %d: %s */", subset->stage, subset_title(g->pool, g->model, subset));
-        for (int i = 0; i < subset->knowns; ++i) {
-            line(out, indent, "links.known[%d] = %s + %s;", i, found_text(g, "motion"),
-                 body_motion_text(g, subset->known[i]));
-            line(out, indent, "known[%d] = column + %d;", i,
-                 g->columns[g->weighing]->offset[g->sequence->body_subset[subset->known[i]]]);
-        }
-        for (int j = 0; j < subset->deps; ++j) {
-            const char *index = coordinate_text(g->pool, g->style->naming, subset->dep[j]);
-            line(out, indent, "links.x[%d] = self->x[%s], links.rate[%d] = self->xd[%s];", j, index, j, index);
-        }
-        if (g->plan->formula[subset->class]->derived)
-            line(out, indent, "links.derived = self->derived + %d;", g->plan->derived_offset[s]);
-        if (block_reads(&g->columns[g->weighing]->motion[subset->class]->block, ARRAY_acc, 0))
-            write_accelerations_of(g, out, indent, subset);
-        line(out, indent,
-             "%s_%s_%s(%s_k_%s_%s[%d], &links, known, act, start + %d, %s + %s, %s + %s, "
-             "column + %d);",
-             g->model->name, columns_name(g), class->name, g->model->name, columns_name(g), class->name,
-             class_place(class, s), g->plan->start_offset[s], found_text(g, "motion"),
-             body_motion_text(g, subset->body[0]), found_text(g, "inertia"), subset_inertia_text(g, s),
-             g->columns[g->weighing]->offset[s]);
-    }
+    for (int s = 0; s < g->sequence->subsets; ++s)
+        write_columns_call(g, out, indent, s);
 }
 
 /* ---- the whole vehicle --------------------------------------------------------------------------------------- */
@@ -164,7 +167,7 @@ static void write_accelerations(void *context, Text *out, int indent)
             line(out, indent, "act[%d] = R(0.0), act[%d] = %s;", i, 3 + i, emit_number(g->pool, -g->model->gravity[i]));
 }
 
-static void write_turn(void *context, Text *out, int indent)
+void write_columns_turn(void *context, Text *out, int indent)
 {
     const Generation *g = context;
     for (int i = 0; i < 3; ++i)
@@ -269,7 +272,8 @@ static void write_whole(void *context, Text *out, int indent)
 void write_weighed_columns(Generation *g, Text *out)
 {
     g->weighing = true;
-    template_expand(g->pool, out, g->templates, "columns_weighed.c.in", g->model->name, NULL, &columns_points, g);
+    template_expand(g->pool, out, g->templates, is_spread(g) ? "columns_spread.c.in" : "columns_weighed.c.in",
+                    g->model->name, NULL, &columns_points, g);
     g->weighing = false;
 }
 
@@ -325,7 +329,7 @@ static const Insertion point[] = {{"columns classes", write_class_columns},
                                   {"columns wheels call", write_call_wheels},
                                   {"columns rates", write_rates},
                                   {"columns accelerations", write_accelerations},
-                                  {"columns turn", write_turn},
+                                  {"columns turn", write_columns_turn},
                                   {"columns residuals", write_residuals_along},
                                   {"columns solution", write_solution},
                                   {"columns apart", write_apart},
@@ -335,10 +339,16 @@ static const Insertion point[] = {{"columns classes", write_class_columns},
                                   {"columns masses", write_masses},
                                   {"columns mass rows", write_mass_rows},
                                   {"columns mass columns", write_mass_columns},
+                                  {"columns wheel functions", write_wheel_column_classes},
+                                  {"columns shares work", write_shares_work},
+                                  {"columns shares", write_shares},
+                                  {"columns side by side", write_side_by_side},
+                                  {"columns shares table", write_shares_table},
                                   {NULL, NULL}};
 
 const Insertions columns_points = {(const char *const[]){"columns.c.in", "columns_whole.c.in", "columns_weighed.c.in",
-                                                         "columns_free.c.in", "columns_apart.c.in", NULL},
+                                                         "columns_free.c.in", "columns_apart.c.in",
+                                                         "columns_spread.c.in", NULL},
                                    point, NULL};
 
 void write_jacobian_columns(void *context, Text *out, int indent)

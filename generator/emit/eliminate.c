@@ -182,9 +182,26 @@ static void add_entry(const Generation *g, const Elimination *z, Text *out, int 
 void write_elimination_factors(Generation *g, Text *out, int indent, int unknowns, const int *unknown,
                                const int *position)
 {
+    write_elimination_rows(g, out, indent, unknowns, unknown, position, 0, unknowns);
+}
+
+int elimination_work(Generation *g, int unknowns, const int *unknown, const int *position, int row)
+{
     const Elimination *z = eliminate(g, unknowns, unknown, position);
     const int n = z->n;
-    for (int i = 0; i < n; ++i)
+    int products = 4;
+    for (int j = 0; j < n; ++j)
+        for (int k = 0; k < row && k < j && z->entry[n * row + j]; ++k)
+            products += 2 * (z->entry[n * row + k] && z->entry[n * k + j]);
+    return products;
+}
+
+void write_elimination_rows(Generation *g, Text *out, int indent, int unknowns, const int *unknown, const int *position,
+                            int first, int end)
+{
+    const Elimination *z = eliminate(g, unknowns, unknown, position);
+    const int n = z->n;
+    for (int i = first; i < end; ++i)
         for (int j = 0; j < n; ++j) {
             if (!z->entry[n * i + j])
                 continue;

@@ -29,6 +29,7 @@ typedef struct Generation {
     const struct RateColumns *columns[2]; /* columns_of() */
     const struct Generation *lanes; /* flat.c: of derivatives beside code in lanes, that of the code; NULL: other */
     struct Generation *single;      /* the derivatives of code in lanes, once they are asked for */
+    struct Spread *spread;          /* spread.c; NULL: not made yet */
 } Generation;
 
 /* model_file.c: a checksum of the whole header, for g->pair. */
@@ -195,17 +196,47 @@ void write_weighed_columns(Generation *g, Text *out);
 /* wheel_columns.c: the same through wheels; nothing for models without fast states. */
 extern const Insertions columns_wheels_points, columns_wheel_points;
 void write_wheel_columns(Generation *g, Text *out);
+/* For spread.c: the call of the function of a subset; functions of the classes of wheels; the call for a member of one;
+ * what moves wheels, with its derivatives; the powertrain. */
+void write_columns_turn(void *context, Text *out, int indent);
+void write_columns_call(Generation *g, Text *out, int indent, int subset);
+void write_wheel_column_classes(void *context, Text *out, int indent);
+void write_wheel_columns_call(Generation *g, Text *out, int indent, int class, int member);
+Block wheel_columns_link(Generation *g);
+void write_drive_columns(void *context, Text *out, int indent);
+
+/* spread.c: weighed columns and factors in pieces for many steps, with Style.spread: numbers of the instance beside
+ * those of other implicit steps, as text; work space, functions and table of the pieces of the columns; the same of
+ * the factors; the end of the table for the runtime. */
+extern const Insertions share_points, side_points;
+bool is_spread(Generation *g);
+const char *spread_numbers(Generation *g);
+void write_shares_work(void *context, Text *out, int indent);
+void write_side_by_side(void *context, Text *out, int indent);
+void write_shares(void *context, Text *out, int indent);
+void write_shares_table(void *context, Text *out, int indent);
+void write_factor_shares(void *context, Text *out, int indent);
+void write_factor_table(void *context, Text *out, int indent);
+void write_share_work_table(void *context, Text *out, int indent);
 
 /* eliminate.c: factors and solutions of the linear systems of implicit steps. unknown: [unknowns] states; position:
  * [unknowns] the state whose rate each is, -1: none. */
 bool elimination_is_short(Generation *g, int unknowns, const int *unknown, const int *position);
 void write_elimination_factors(Generation *g, Text *out, int indent, int unknowns, const int *unknown,
                                const int *position);
+/* Rows `first` to end - 1 of the factors alone; the products that a row takes. */
+void write_elimination_rows(Generation *g, Text *out, int indent, int unknowns, const int *unknown, const int *position,
+                            int first, int end);
+int elimination_work(Generation *g, int unknowns, const int *unknown, const int *position, int row);
 void write_elimination_solution(Generation *g, Text *out, int indent, int unknowns, const int *unknown,
                                 const int *position);
 
 /* implicit.c: what Style.implicit adds: sizes, members of the instance, functions and tables, the descriptor's end. */
 extern const Insertions implicit_points;
+/* The unknowns in the order of the state, and the states whose rates they are; returns how many. */
+int implicit_unknowns(const Generation *g, int **unknown, int **position);
+/* Are the factors straight-line code? */
+bool implicit_is_short(Generation *g);
 void write_implicit_sizes(Generation *g, Text *out, int indent);
 void write_implicit_members(void *context, Text *out, int indent);
 void write_implicit_code(void *context, Text *out, int indent);

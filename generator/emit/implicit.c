@@ -55,14 +55,13 @@ void write_implicit_members(void *context, Text *out, int indent)
     const RateColumns *weighed = weighed_columns(g);
     line(out, 0, "#define %s_IMPLICIT 1 /* for code of many vehicles */", g->upper);
     line(out, indent, "gic_implicit_head implicit; /* of implicit steps: .keep is for the caller */");
-    line(out, indent, "gic_real implicit_number[GIC_IMPLICIT(%s_STATE_ROOM, %d) + %d];", g->upper, jacobian_columns(g),
-         weighed ? weighed->masses : 0);
+    line(out, indent, "gic_real implicit_number[GIC_IMPLICIT(%s_STATE_ROOM, %d) + %d%s];", g->upper,
+         jacobian_columns(g), weighed ? weighed->masses : 0, is_spread(g) ? spread_numbers(g) : "");
     line(out, indent, "int32_t implicit_pivot[%s];", /* C has no empty arrays */
          unknowns(g) ? pool_print(g->pool, "%s_IMPLICIT_UNKNOWNS", g->upper) : "1");
 }
 
-/* The unknowns in the order of the state, and the states whose rates they are. */
-static void list_unknowns(const Generation *g, int **unknown, int **position)
+int implicit_unknowns(const Generation *g, int **unknown, int **position)
 {
     int count = 0;
     *unknown = pool_alloc(g->pool, ((size_t)states(g) + 1) * sizeof **unknown);
@@ -72,13 +71,14 @@ static void list_unknowns(const Generation *g, int **unknown, int **position)
             (*unknown)[count] = i;
             (*position)[count++] = position_of(g, i);
         }
+    return count;
 }
 
 static void write_implicit_factors(void *context, Text *out, int indent)
 {
     Generation *g = context;
     int *unknown, *position;
-    list_unknowns(g, &unknown, &position);
+    (void)implicit_unknowns(g, &unknown, &position);
     write_elimination_factors(g, out, indent, unknowns(g), unknown, position);
 }
 
@@ -86,16 +86,16 @@ static void write_implicit_solution(void *context, Text *out, int indent)
 {
     Generation *g = context;
     int *unknown, *position;
-    list_unknowns(g, &unknown, &position);
+    (void)implicit_unknowns(g, &unknown, &position);
     write_elimination_solution(g, out, indent, unknowns(g), unknown, position);
 }
 
-static bool is_short(Generation *g)
+bool implicit_is_short(Generation *g)
 {
     int *unknown, *position;
     if (g->style->exact)
         return false;
-    list_unknowns(g, &unknown, &position);
+    (void)implicit_unknowns(g, &unknown, &position);
     return unknowns(g) > 0 && elimination_is_short(g, unknowns(g), unknown, position);
 }
 
@@ -103,15 +103,16 @@ static void write_elimination(void *context, Text *out, int indent)
 {
     Generation *g = context;
     (void)indent;
-    if (is_short(g))
-        template_expand(g->pool, out, g->templates, "implicit_eliminate.c.in", g->model->name, NULL, &implicit_points,
-                        g);
+    if (implicit_is_short(g))
+        template_expand(g->pool, out, g->templates,
+                        is_spread(g) ? "implicit_eliminate_spread.c.in" : "implicit_eliminate.c.in", g->model->name,
+                        NULL, &implicit_points, g);
 }
 
 static void write_functions(void *context, Text *out, int indent)
 {
     Generation *g = context;
-    const bool own = is_short(g);
+    const bool own = implicit_is_short(g);
     line(out, indent, "%s,", own ? pool_print(g->pool, "%s_factorize", g->model->name) : "NULL");
     line(out, indent, "%s,", own ? pool_print(g->pool, "%s_solve", g->model->name) : "NULL");
 }
@@ -166,6 +167,19 @@ static void write_mass_tables(void *context, Text *out, int indent)
         line(out, indent, "%s_MASSES, %s_mass_row, %s_mass_column,", g->upper, g->model->name, g->model->name);
     else
         line(out, indent, "0, NULL, NULL,");
+    if (is_spread(g))
+        line(out, indent, "(int)%s_SHARES + (int)%s_FACTORS, %s_share_work, %s_any_share,", g->model->name,
+             g->model->name, g->model->name, g->model->name);
+    else
+        line(out, indent, "0, NULL, NULL,");
+}
+
+static void write_share(void *context, Text *out, int indent)
+{
+    Generation *g = context;
+    (void)indent;
+    if (is_spread(g))
+        template_expand(g->pool, out, g->templates, "implicit_share.c.in", g->model->name, NULL, &implicit_points, g);
 }
 
 static const Insertion implicit_point[] = {{"implicit weighed", write_weighed},
@@ -174,12 +188,18 @@ static const Insertion implicit_point[] = {{"implicit weighed", write_weighed},
                                            {"implicit elimination", write_elimination},
                                            {"implicit functions", write_functions},
                                            {"implicit factors", write_implicit_factors},
+                                           {"implicit factor shares", write_factor_shares},
+                                           {"implicit factor table", write_factor_table},
+                                           {"implicit shares", write_share_work_table},
+                                           {"implicit share", write_share},
                                            {"implicit solution", write_implicit_solution},
                                            {"implicit unknowns", write_unknowns},
                                            {"implicit positions", write_positions},
                                            {NULL, NULL}};
 
-const Insertions implicit_points = {(const char *const[]){"implicit.c.in", "implicit_eliminate.c.in", NULL},
+const Insertions implicit_points = {(const char *const[]){"implicit.c.in", "implicit_eliminate.c.in",
+                                                          "implicit_eliminate_spread.c.in", "implicit_share.c.in",
+                                                          NULL},
                                     implicit_point, NULL};
 
 void write_implicit_code(void *context, Text *out, int indent)

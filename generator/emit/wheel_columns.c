@@ -50,11 +50,13 @@ static const Insertion wheel_point[] = {{"columns arrays", write_arrays},
 
 const Insertions columns_wheel_points = {(const char *const[]){"columns_wheel.c.in", NULL}, wheel_point, NULL};
 
-static void write_wheel_classes(void *context, Text *out, int indent)
+void write_wheel_column_classes(void *context, Text *out, int indent)
 {
     Generation *g = context;
     const Wheels *wheels = g->formulation->wheels;
     (void)indent;
+    if (!columns_of(g)->wheels)
+        return;
     const bool written = g->weighing && has_tangents(g); /* one function serves both */
     for (int c = 0; c < wheels->classes && !written; ++c) {
         const WheelClass *class = &wheels->class[c];
@@ -71,24 +73,27 @@ static void write_wheel_classes(void *context, Text *out, int indent)
     }
 }
 
+void write_wheel_columns_call(Generation *g, Text *out, int indent, int class, int member)
+{
+    const Wheels *wheels = g->formulation->wheels;
+    const int wheel = wheels->class[class].member[member], place = wheel_rolling(g->model, wheel);
+    const char *fast = wheel_place_text(g, "FAST", wheel, g->model->wheel[wheel].fast), *name = g->model->name;
+    line(out, indent, "if (status == GIC_OK) /* %s */", g->model->wheel[wheel].name);
+    line(out, indent + 4, "status = %s_columns_wheel_%s(self, %s_k_columns_wheel_%s[%d], time,", name,
+         wheels->class[class].name, name, wheels->class[class].name, member);
+    line(out, indent + 8, "link + %s, fast + %s, torque + %s, rate + %s, grip + %s, local + %d);",
+         wheel_place_text(g, "LINK", wheel, LINK_NUMBERS * place), fast,
+         wheel_place_text(g, "TORQUE", wheel, 2 * place), fast,
+         wheel_place_text(g, "GRIP", wheel, GRIP_NUMBERS * place), columns_of(g)->wheels->offset[wheel]);
+}
+
 static void write_calls(void *context, Text *out, int indent)
 {
     Generation *g = context;
     const Wheels *wheels = g->formulation->wheels;
-    const WheelColumns *columns = columns_of(g)->wheels;
-    const char *name = g->model->name;
     for (int c = 0; c < wheels->classes; ++c)
-        for (int i = 0; i < wheels->class[c].members; ++i) {
-            const int wheel = wheels->class[c].member[i], place = wheel_rolling(g->model, wheel);
-            const char *fast = wheel_place_text(g, "FAST", wheel, g->model->wheel[wheel].fast);
-            line(out, indent, "if (status == GIC_OK) /* %s */", g->model->wheel[wheel].name);
-            line(out, indent + 4, "status = %s_columns_wheel_%s(self, %s_k_columns_wheel_%s[%d], time,", name,
-                 wheels->class[c].name, name, wheels->class[c].name, i);
-            line(out, indent + 8, "link + %s, fast + %s, torque + %s, rate + %s, grip + %s, local + %d);",
-                 wheel_place_text(g, "LINK", wheel, LINK_NUMBERS * place), fast,
-                 wheel_place_text(g, "TORQUE", wheel, 2 * place), fast,
-                 wheel_place_text(g, "GRIP", wheel, GRIP_NUMBERS * place), columns->offset[wheel]);
-        }
+        for (int i = 0; i < wheels->class[c].members; ++i)
+            write_wheel_columns_call(g, out, indent, c, i);
 }
 
 static void write_torques(void *context, Text *out, int indent)
@@ -98,18 +103,23 @@ static void write_torques(void *context, Text *out, int indent)
     line(out, indent, "gic_real torque[%d], grip[%d];", room(2 * count), room(GRIP_NUMBERS * count));
 }
 
-/* What moves wheels, with its derivatives. */
-static void write_link(void *context, Text *out, int indent)
+Block wheel_columns_link(Generation *g)
 {
-    Generation *g = context;
     const Block *link = &g->formulation->wheels->link;
-    Constants none = {0};
     Block both = {.dag = link->dag, .eager = true};
     for (int i = 0; i < link->stores; ++i)
         block_store(&both, link->store[i].value, link->store[i].target);
     const Block *part = &columns_of(g)->wheels->link;
     for (int i = 0; i < part->stores; ++i)
         block_store(&both, part->store[i].value, part->store[i].target);
+    return both;
+}
+
+static void write_link(void *context, Text *out, int indent)
+{
+    Generation *g = context;
+    Constants none = {0};
+    const Block both = wheel_columns_link(g);
     write_fast_block(g, out, &both, SCOPE_FAST, &none, indent);
 }
 
@@ -127,7 +137,7 @@ static void write_drive_block(void *context, Text *out, int indent)
     write_fast_block(g, out, &columns_of(g)->wheels->drive.block, SCOPE_FAST, &none, indent);
 }
 
-static void write_drive_along(void *context, Text *out, int indent)
+void write_drive_columns(void *context, Text *out, int indent)
 {
     Generation *g = context;
     (void)indent;
@@ -136,13 +146,13 @@ static void write_drive_along(void *context, Text *out, int indent)
                         g);
 }
 
-static const Insertion wheels_point[] = {{"columns wheel classes", write_wheel_classes},
+static const Insertion wheels_point[] = {{"columns wheel classes", write_wheel_column_classes},
                                          {"columns found motions", write_found_motions},
                                          {"columns torques", write_torques},
                                          {"columns link", write_link},
                                          {"columns torque", write_torque},
                                          {"columns wheel calls", write_calls},
-                                         {"columns drive", write_drive_along},
+                                         {"columns drive", write_drive_columns},
                                          {"columns drive block", write_drive_block},
                                          {NULL, NULL}};
 

@@ -84,10 +84,15 @@ const Engine *engine_open_run(Pool *pool, const char *name, const Model *model, 
     EngineOptions own = *options;
     own.exact = scene->method == METHOD_BDF && engine_has_implicit(name) && !options->lanes;
     own.implicit = scene_implicit(scene) || own.exact;
+    own.spread = scene->spread;
     stepper_need(scene->method);
     if (scene_implicit(scene))
         check_implicit(pool, name, scene, options);
     own.facts = path && !own.implicit ? scene_facts(pool, model, scene, path, drawn) : NULL;
     own.validation = scene_validation(pool, model, scene);
-    return engine_open(pool, name, model, &own);
+    const Engine *engine = engine_open(pool, name, model, &own);
+    if (own.spread && engine->code && engine->code->implicit && !engine->code->implicit->share_count)
+        diag_fail((Place){0}, "remove spread_jacobian from the scene",
+                  "the Jacobian of this model is not made by shares (models/STIFF.md)");
+    return engine;
 }

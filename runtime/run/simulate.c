@@ -486,8 +486,11 @@ int scene_start(const Engine *engine, const Scene *scene, gic_head *self)
     self->road = scene->road;
     self->locate = scene->locate;
     self->most = scene->most_work;
-    if (model->implicit)
-        ((gic_implicit_head *)(void *)((char *)self + model->implicit->head_offset))->keep = scene->keep;
+    if (model->implicit) {
+        gic_implicit_head *implicit = (gic_implicit_head *)(void *)((char *)self + model->implicit->head_offset);
+        implicit->keep = scene->keep;
+        implicit->spread = scene->spread && model->implicit->share_count > 0;
+    }
     self->input_function = scene_inputs;
     self->user = (void *)scene; /* only read */
     if (scene->driver)

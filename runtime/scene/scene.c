@@ -210,6 +210,18 @@ static void read_keep(Reader *reader, const Item *item, bool replaced)
     reader->scene->keep = (int32_t)keep;
 }
 
+static void read_spread(Reader *reader, const Item *item, bool replaced)
+{
+    Scene *scene = reader->scene;
+    scene->spread = doc_bool(item, "spread_jacobian") && scene_implicit(scene);
+    if (!scene_implicit(scene) && !replaced)
+        diag_fail(item->at, "remove it, or write `integrator: ros2`, `ros3` or `imex`",
+                  "spread_jacobian is for implicit steps");
+    if (scene->spread && scene->keep < 2)
+        diag_fail(item->at, "write for example `keep_jacobian: 16`, or remove it",
+                  "spread_jacobian needs a Jacobian that is kept for 2 steps or more, which share its work");
+}
+
 static void read_time(Reader *reader, const Item *root)
 {
     Scene *scene = reader->scene;
@@ -617,9 +629,9 @@ static const Scene *scene_of(Pool *pool, const Item *root, const char *path, con
     if (other && !doc_find(root, "gicscene"))
         diag_fail(other->at, "name the model first, then the scene", "this is a model, where a scene is wanted");
     CHECK_KEYS(root, "the scene", "gicscene", "description", "duration", "step", "integrator", "tolerance", "ratio",
-               "steady", "sleep", "locate", "most_work", "keep_jacobian", "massless", "base", "driven", "posts",
-               "output_step", "initial", "road", "inputs", "input_file", "driver", "course", "parameters", "outputs",
-               "plot", "units", "until", "when");
+               "steady", "sleep", "locate", "most_work", "keep_jacobian", "spread_jacobian", "massless", "base",
+               "driven", "posts", "output_step", "initial", "road", "inputs", "input_file", "driver", "course",
+               "parameters", "outputs", "plot", "units", "until", "when");
     scene->source = root->at.source;
     const Item *version = scene_need(root, "gicscene", "the scene");
     if (doc_number(version, "gicscene") != 1)
@@ -634,6 +646,8 @@ static const Scene *scene_of(Pool *pool, const Item *root, const char *path, con
         read_ratio(&reader, doc_find(root, "ratio"), integrator);
     if (doc_find(root, "keep_jacobian"))
         read_keep(&reader, doc_find(root, "keep_jacobian"), integrator);
+    if (doc_find(root, "spread_jacobian"))
+        read_spread(&reader, doc_find(root, "spread_jacobian"), integrator);
     read_time(&reader, root);
     read_skips(&reader, root, integrator);
     scene->parameter = pool_alloc(pool, sizeof(double) * (size_t)(model->tunables + 1));

@@ -54,6 +54,7 @@ typedef struct Scene {
     double steady;                      /* of gic_step_steady; 0: always fast steps */
     int most_work;                      /* gic_head.most; 0: no bound */
     int32_t keep;                       /* of implicit steps: steps with one Jacobian */
+    bool spread;                        /* these steps make the next one by shares */
     int locate;                         /* gic_head.locate: constant steps are made in parts at contacts */
     double position[3], euler[4], velocity[3], angular_velocity[3]; /* of the base, free base only */
     bool along, equilibrium; /* the velocity is a `speed` along the base's x axis; start in static equilibrium */

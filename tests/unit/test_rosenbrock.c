@@ -167,6 +167,9 @@ static gic_implicit whole = {COLUMNS,
                              NULL,
                              0,
                              NULL,
+                             NULL,
+                             0,
+                             NULL,
                              NULL};
 
 static gic_model model_of(const Problem *problem)
@@ -520,6 +523,9 @@ static void test_positions(void **unused)
                                offsetof(Probe, pivot),
                                offsetof(Probe, number),
                                probe_jacobian,
+                               NULL,
+                               NULL,
+                               0,
                                NULL,
                                NULL,
                                0,
