@@ -27,7 +27,8 @@
 #include <gsl/gsl_linalg.h>
 
 const double equilibrium_limit = 1e-9;
-static const double slowest = 1e-9; /* m/s, rad/s: below this speed it stands still */
+const double equilibrium_tipped = 1.0471975511965976; /* 60 degrees, as for runs (outcome_look()) */
+static const double slowest = 1e-9;                   /* m/s, rad/s: below this speed it stands still */
 
 enum { MOST_STEPS = 500 };
 
@@ -361,6 +362,17 @@ int equilibrium_force(const Equilibrium *found, int force)
     for (int i = force; i < found->model->forces; ++i)
         at -= !force_is_wrench(&found->model->force[i]);
     return at;
+}
+
+double equilibrium_lean(const Equilibrium *found)
+{
+    const double *state = tape_array(found->self, found->engine->code->state_offset);
+    double now[9], drawn[9];
+    if (!found->model->free_base || !found->model->wheels)
+        return 0;
+    mat_from_euler(state + 3, now);
+    mat_from_euler(found->model->body[BODY_BASE].euler, drawn);
+    return acos(fmax(-1, fmin(1, dot3(now + 6, drawn + 6))));
 }
 
 static bool is_motion(double velocity)

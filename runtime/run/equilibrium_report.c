@@ -332,7 +332,7 @@ void equilibrium_row(Pool *pool, const Equilibrium *found, const char *path)
     interrupt_release();
 }
 
-static void warn_ranges(const Equilibrium *found, Place at)
+void equilibrium_warn_ranges(const Equilibrium *found, Place at)
 {
     const gic_model *code = found->engine->code;
     const double *state = tape_array(found->self, code->state_offset);
@@ -340,6 +340,17 @@ static void warn_ranges(const Equilibrium *found, Place at)
         if (code->coordinate_state[c] >= 0)
             scene_warn_range(&found->model->coordinate[c], at, state[code->coordinate_state[c]],
                              state[code->coordinate_state[c]]);
+}
+
+static void warn_tipped(const Equilibrium *found, Place at)
+{
+    const double lean = equilibrium_lean(found);
+    if (lean > equilibrium_tipped)
+        diag_warn(at,
+                  "bring the centre of mass between the wheels (`com`, `center`), or start the vehicle nearer to where "
+                  "it stands",
+                  "the vehicle does not rest on its wheels: it tips over and lies there leaning by %.0f degrees",
+                  57.29577951308232 * lean);
 }
 
 /* Warn if a small disturbance grows. Free wheels and slips without load leave eigenvalues of about 1e-5 1/s around 0.
@@ -373,7 +384,8 @@ double equilibrium_settle(Pool *pool, const Engine *engine, const Scene *scene, 
     if (status != GIC_OK)
         diag_fail(at, NULL, "no outputs: %s", instance_status(pool, code, &found->self->head, status));
     if (!quiet) {
-        warn_ranges(found, at);
+        warn_tipped(found, at);
+        equilibrium_warn_ranges(found, at);
         warn_unstable(pool, found, at);
     }
     return residual;

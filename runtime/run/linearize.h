@@ -113,6 +113,12 @@ bool equilibrium_stands(const Model *model, const Scene *scene);
 /* Output components of force elements (loads: -1) and of wheels (fz first) of Equilibrium.model. */
 int equilibrium_force(const Equilibrium *found, int force);
 int equilibrium_wheel(const Equilibrium *found, int wheel);
+/* The angle, rad, between z of the drawing, as the base carries it, and the vertical; 0 for no vehicle with wheels and
+ * a free base. From equilibrium_tipped on the vehicle does not rest on its wheels but has tipped over. */
+double equilibrium_lean(const Equilibrium *found);
+extern const double equilibrium_tipped;
+/* Warn once of each coordinate that rests beyond its range. */
+void equilibrium_warn_ranges(const Equilibrium *found, Place at);
 /* What is to be said of a wheel that touches, but deflects less than its `fade` at these outputs; NULL: nothing. */
 const char *equilibrium_faded(Pool *pool, const Equilibrium *found, const double *output, int wheel);
 /* The scene with the places of the equilibrium; a `speed` is along the base there. */
@@ -144,6 +150,7 @@ typedef struct Mode {
     double real, imaginary;
     double *share; /* [places + fast states] of a place together with its rate, or of a fast state; sum 1 */
     double *shape; /* [2][places] real and imaginary part of its eigenvector */
+    double moves;  /* the largest of the places in that vector over the largest of all numbers, by Linear.reach */
 } Mode;
 
 typedef struct Modes {

@@ -290,6 +290,8 @@ static Manoeuvre drive(Pool *pool, const Model *model, const ManoeuvreKind *kind
 {
     Manoeuvre m = {.pool = pool, .value = value};
     m.car = car_open(pool, model, request);
+    if (!request->quiet)
+        equilibrium_warn_ranges(m.car->sheet.found, (Place){model->source, 0, 0});
     m.result = pool_alloc(pool, sizeof *m.result);
     *m.result = (Sheet){.pool = pool, .model = model};
     kind->run(&m);

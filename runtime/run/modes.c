@@ -297,6 +297,13 @@ static void describe(const Linear *linear, const gsl_matrix *A, const Deflation 
         mode->shape[i] = GSL_REAL(gsl_matrix_complex_get(shape, i, 0));
         mode->shape[places + i] = GSL_IMAG(gsl_matrix_complex_get(shape, i, 0));
     }
+    double largest[2] = {0};
+    for (size_t i = 0; i < shape->size1; ++i) {
+        const double size = gsl_complex_abs(gsl_matrix_complex_get(shape, i, 0)) / linear->reach[i];
+        largest[0] = fmax(largest[0], size);
+        largest[1] = i < places ? fmax(largest[1], size) : largest[1];
+    }
+    mode->moves = largest[0] > 0 ? largest[1] / largest[0] : 0;
     gsl_matrix_complex_free(L);
     gsl_matrix_complex_free(R);
     gsl_matrix_complex_free(group[1]);
@@ -340,7 +347,7 @@ static bool list_modes(Pool *pool, const Linear *linear, const gsl_matrix *A, co
             continue;
         Mode *mode = POOL_PUSH(pool, modes->mode, modes->count);
         *mode = (Mode){GSL_REAL(value), is_real ? 0 : GSL_IMAG(value), pool_alloc(pool, A->size1 * sizeof(double)),
-                       pool_alloc(pool, 2 * A->size1 * sizeof(double))};
+                       pool_alloc(pool, 2 * A->size1 * sizeof(double)), 0};
         describe(linear, A, d, &right, left, k, mode);
     }
     qsort(modes->mode, (size_t)modes->count, sizeof *modes->mode, by_size);

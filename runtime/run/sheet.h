@@ -20,6 +20,7 @@ typedef struct SheetRow {
     double scale, value;      /* scale: from unit to shown */
     double other;             /* of the vehicle to compare with; NAN: it has no such number */
     const char *place;        /* what other vehicles call it: front.left.camber; NULL: as its name */
+    int mode;                 /* of this small motion, from 1, in Sheet.modes; 0: of none */
 } SheetRow;
 
 typedef struct Sheet {
@@ -100,6 +101,13 @@ const Model *sheet_other(Pool *pool, const Model *model, const char *file, const
 const Model *sheet_set(Pool *pool, const Model *model, const Scene *scene);
 /* The same file: what a wheel of an axle, or one of dual wheels, is called in any vehicle: front.left_1. */
 const char *sheet_place_of(Pool *pool, const KcAxle *axle, int wheel, int part);
+/* The same file: what a wheel or one of dual wheels, or all of them, is called in names of numbers: NAME, or wheel.NAME
+ * where an axle is called so. Names of wheels have no dots. */
+const char *sheet_wheel(const Sheet *sheet, const char *name);
+/* The same file: true if two numbers of two sheets belong beside each other; a name for another number after these
+ * rows: itself, or behind `other.` as often as it is taken. */
+bool sheet_is_same(const SheetRow *a, const SheetRow *b);
+const char *sheet_free_name(Pool *pool, const SheetRow *row, int rows, const char *name);
 /* The same file: numbers of another one, which is called `name`, beside those of the same places or names; then those
  * that only the other one has. */
 void sheet_compare(Sheet *sheet, const Sheet *other, const char *name);
@@ -122,14 +130,15 @@ typedef struct SheetShape {
 } SheetShape;
 /* sheet_shapes.c. False: it could not be found. */
 bool sheet_shape_of(const Sheet *sheet, const Mode *mode, SheetShape *shape);
-/* sheet_match.c: modes of the same shape in both sheets get the same place, and a note where their numbers differ. */
-void sheet_match_modes(Sheet *sheet, Sheet *other);
-/* The same file: shapes of modes that several sheets of one vehicle have, none at first; and the rows of a sheet's
- * modes get the numbers of the known shapes that they have. Shapes not known yet come after these, with numbers of
- * their own. */
+/* sheet_match.c: shapes of modes that several sheets have, none at first; and the rows of a sheet's modes get the
+ * numbers of the known shapes that they have. Shapes not known yet come after these, with numbers of their own. */
 typedef struct SheetShapes SheetShapes;
 SheetShapes *sheet_shapes(Pool *pool);
 void sheet_follow_modes(Sheet *sheet, SheetShapes *known);
+/* The same file, after sheet_follow_modes() of the sheet itself: modes of the other one get the numbers of the sheet's
+ * own modes of the same shape, and a note where that is another number than before; the other one's further modes get
+ * numbers that no mode of the sheet has, by what is known. */
+void sheet_match_modes(Sheet *sheet, Sheet *other, SheetShapes *known);
 /* sheet_shapes.c: a mode's motion as seen from the side and from behind, as SVG; nothing where it can't be found. */
 void sheet_shape(const Sheet *sheet, const Mode *mode, Text *out);
 /* sheet_page.c: the sections but that of the modes as tables; the page. */

@@ -48,6 +48,14 @@ const char *sheet_place_of(Pool *pool, const KcAxle *axle, int wheel, int part)
     return pool_print(pool, "%s.%s_%d", axle->name, axle->wheel[wheel].side > 0 ? "left" : "right", number);
 }
 
+const char *sheet_wheel(const Sheet *sheet, const char *name)
+{
+    for (int a = 0; a < sheet->kc->axles; ++a)
+        if (!strcmp(sheet->kc->axle[a].name, name))
+            return pool_print(sheet->pool, "wheel.%s", name);
+    return name;
+}
+
 void sheet_place(Sheet *sheet, const KcAxle *axle, int wheel, int part, const char *what)
 {
     sheet->row[sheet->rows - 1].place =
@@ -60,16 +68,27 @@ bool sheet_differs(const SheetRow *row)
            !(fabs(row->other - row->value) <= 1e-9 * fmax(1 / row->scale, fabs(row->value)));
 }
 
-static bool is_same(const SheetRow *a, const SheetRow *b)
+bool sheet_is_same(const SheetRow *a, const SheetRow *b)
 {
-    return !strcmp(a->unit, b->unit) &&
-           (a->place && b->place ? !strcmp(a->place, b->place) : !strcmp(a->name, b->name));
+    if (strcmp(a->unit, b->unit) != 0 || !a->place != !b->place)
+        return false;
+    return a->place ? !strcmp(a->place, b->place) : !strcmp(a->name, b->name);
+}
+
+const char *sheet_free_name(Pool *pool, const SheetRow *row, int rows, const char *name)
+{
+    for (int i = 0; i < rows; ++i)
+        if (!strcmp(row[i].name, name)) {
+            name = pool_print(pool, "other.%s", name);
+            i = -1;
+        }
+    return name;
 }
 
 static const SheetRow *beside(const Sheet *sheet, int rows, const SheetRow *row)
 {
     for (int i = 0; i < rows; ++i)
-        if (is_same(&sheet->row[i], row))
+        if (sheet_is_same(&sheet->row[i], row))
             return &sheet->row[i];
     return NULL;
 }
@@ -92,6 +111,7 @@ void sheet_compare(Sheet *sheet, const Sheet *other, const char *name)
         begun = section;
         row.other = row.value;
         row.value = NAN;
+        row.name = sheet_free_name(sheet->pool, sheet->row, sheet->rows, row.name);
         *POOL_PUSH(sheet->pool, sheet->row, sheet->rows) = row;
     }
     for (int i = 0; i < other->notes; ++i)

@@ -13,7 +13,8 @@ static const double speeds[] = {10, 20, 30}; /* m/s */
 
 enum { X = 0, Y = 1, Z = 2, ROLL = 3, PITCH = 4, YAW = 5 };
 
-/* From here on notes tell: a mean angle of the steered wheels straight ahead, rad; a vertical acceleration, m/s^2. */
+/* From here on notes tell: a mean angle of wheels, rad, of an axle or by which the steering is off for the vehicle to
+ * run straight ahead; a vertical acceleration, m/s^2. */
 static const double oblique = 2e-3, lifting = 0.2;
 
 /* Motions that are left out: places along which nothing changes, and the speed. */
@@ -80,7 +81,9 @@ static bool matters(int n, const double *A, const double *b, int i)
     return changes && changed;
 }
 
-int sheet_respond(const Sheet *sheet, int steer, double speed, double *z, double *falls)
+/* sheet_respond(), and the steady motion [linear->count] into which the vehicle goes as it stands, with the steering
+ * left alone: A z + f = 0; NULL: not asked for. */
+static int respond(const Sheet *sheet, int steer, double speed, double *z, double *falls, double *left_alone)
 {
     const Linear *linear = sheet->found->linear;
     const gic_model *code = sheet->found->engine->code;
@@ -108,6 +111,15 @@ int sheet_respond(const Sheet *sheet, int steer, double speed, double *z, double
         for (int j = 0; j < n; ++j)
             A[i * n + j] = A[kept[i] * all + kept[j]];
         b[i] = -b[kept[i]];
+        f[i] = kept[i] < linear->places ? 0 : -f[kept[i]]; /* places: the way along the axes of a base with a pitch */
+    }
+    if (left_alone) {
+        double *copy = pool_alloc(sheet->pool, ((size_t)n * (size_t)n + 1) * sizeof *copy);
+        memcpy(copy, A, (size_t)n * (size_t)n * sizeof *copy);
+        memset(left_alone, 0, (size_t)all * sizeof *left_alone);
+        const bool solved = kc_solve(n, copy, f) && gic_finite(f, n);
+        for (int i = 0; i < n && solved; ++i)
+            left_alone[kept[i]] = f[i];
     }
     memset(z, 0, (size_t)all * sizeof *z);
     if (!kc_solve(n, A, b) || !gic_finite(b, n))
@@ -115,6 +127,11 @@ int sheet_respond(const Sheet *sheet, int steer, double speed, double *z, double
     for (int i = 0; i < n; ++i)
         z[kept[i]] = b[i];
     return GIC_OK;
+}
+
+int sheet_respond(const Sheet *sheet, int steer, double speed, double *z, double *falls)
+{
+    return respond(sheet, steer, speed, z, falls, NULL);
 }
 
 /* The axle that is steered, by a driven coordinate; NULL: there is none, *why. */
@@ -228,14 +245,46 @@ double sheet_yaw_rate(const Sheet *sheet, const double *z)
     return z[sheet->found->linear->places + YAW];
 }
 
-/* Tell where the wheels do not stand straight at rest, so that motion straight ahead is none that lasts. */
-static void look_straight(Sheet *sheet, const KcAxle *axle)
+/* The mean steer angle, rad, to the left, at which the wheels of an axle stand at rest. */
+static double standing_of(const Sheet *sheet, const KcAxle *axle)
+{
+    const KcAxle none = {.steer = -1};
+    KcLook *look = kc_look_new(sheet->kc, &none);
+    double mean = 0;
+    if (kc_look(sheet->kc, sheet->w, look) != GIC_OK)
+        return 0;
+    for (int i = 0; i < axle->wheels; ++i) {
+        KcPose pose;
+        kc_pose(&axle->wheel[i], look, &pose);
+        mean += kc_steer(&pose) / axle->wheels;
+    }
+    return mean;
+}
+
+/* "wheels of axle rear stand at 2.86 deg": of all that do not stand straight; NULL: there are none. */
+static const char *askew(const Sheet *sheet, const KcAxle *but)
+{
+    const char *names = NULL;
+    for (int a = 0; a < sheet->kc->axles; ++a) {
+        const KcAxle *axle = &sheet->kc->axle[a];
+        const double angle = axle == but || axle->unit ? 0 : standing_of(sheet, axle);
+        if (fabs(angle) > oblique)
+            names = pool_print(sheet->pool, "%s%swheels of axle %s stand at %.3g deg on the mean", names ? names : "",
+                               names ? ", " : "", axle->name, 57.29577951308232 * angle);
+    }
+    return names;
+}
+
+/* Tell that straight ahead is a motion that does not last: at a speed the vehicle turns by `turns`, m/s^2 to the left,
+ * as it stands, which the steering, turned by `needed`, rad of its wheels to the left, would balance. */
+static void tell_oblique(Sheet *sheet, const KcAxle *axle, double speed, double turns, double needed)
 {
     const Coordinate *c = &sheet->model->coordinate[axle->steer];
     const Turning turning = turning_of(sheet, axle);
     const double standing = turning.standing, by_unit = turning.mean, at = sheet->w[axle->steer];
     const double grain = 1e-3 * (c->range[1] - c->range[0]);
-    if (fabs(standing) > oblique)
+    const char *others = askew(sheet, axle), *all = askew(sheet, NULL);
+    if (fabs(standing) > oblique && !others)
         sheet_note(sheet,
                    pool_print(sheet->pool,
                               "cornering: the wheels of axle %s do not stand straight but turned by %.3g deg on the "
@@ -243,6 +292,15 @@ static void look_straight(Sheet *sheet, const KcAxle *axle)
                               "steering, `initial: %.4g` or near it",
                               axle->name, 57.29577951308232 * standing, c->name, at, sheet->model->input[c->input].unit,
                               grain * round((at - standing / by_unit) / grain) + 0.0));
+    else
+        sheet_note(sheet,
+                   pool_print(sheet->pool,
+                              "cornering: the vehicle does not run straight ahead: at %g m/s it turns to the %s by "
+                              "%.3g m/s^2, as if the wheels of axle %s were turned by %.3g deg%s%s: numbers are those "
+                              "of a motion that does not last; %s",
+                              speed, turns > 0 ? "left" : "right", fabs(turns), axle->name, 57.29577951308232 * -needed,
+                              all ? "; " : "", all ? all : "",
+                              all ? "straighten these axles" : "what pushes it aside? see loads, brakes and tires"));
 }
 
 void sheet_cornering(Sheet *sheet)
@@ -252,22 +310,27 @@ void sheet_cornering(Sheet *sheet)
     const Linear *linear = sheet->found->linear;
     const KcAxle *axle = sheet_steered(sheet, &angle, &why, &remedy);
     double *z = pool_alloc(sheet->pool, (size_t)linear->count * sizeof *z);
+    double *left_alone = pool_alloc(sheet->pool, (size_t)linear->count * sizeof *left_alone);
+    bool told = false;
     if (!axle) {
         sheet_miss(sheet, pool_print(sheet->pool, "cornering: %s", why));
         return;
     }
-    look_straight(sheet, axle);
     for (size_t k = 0; k < sizeof speeds / sizeof *speeds; ++k) {
         const double v = speeds[k];
         const char *section = pool_print(sheet->pool, "Cornering at %g m/s", v);
         const char *name = pool_print(sheet->pool, "at_%g", v);
         double falls;
-        const int status = sheet_respond(sheet, axle->steer, v, z, &falls);
+        const int status = respond(sheet, axle->steer, v, z, &falls, left_alone);
         if (status != GIC_OK) {
             sheet_miss(sheet, pool_print(sheet->pool, "cornering at %g m/s: no steady response", v));
             continue;
         }
         const double yaw = sheet_yaw_rate(sheet, z), lateral = v * yaw;
+        const double turns = v * sheet_yaw_rate(sheet, left_alone), needed = -turns / lateral * angle;
+        if (fabs(needed) > oblique && !told)
+            tell_oblique(sheet, axle, v, turns, axle->ahead * needed);
+        told = told || fabs(needed) > oblique;
         const double lever = sheet->com[0] - sheet->model->body[BODY_BASE].position[0];
         const double slip = (z[linear->places + Y] + yaw * lever) / v;
         sheet_add(sheet, section, pool_print(sheet->pool, "%s.yaw_gain", name), "Yaw rate by the steer angle", "1/s",

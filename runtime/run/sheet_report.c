@@ -31,7 +31,7 @@ static const struct {
 
 void sheet_add(Sheet *sheet, const char *section, const char *name, const char *title, const char *unit, double value)
 {
-    SheetRow row = {section, name, title, unit, unit, 1, value + 0.0, NAN, NULL};
+    SheetRow row = {section, name, title, unit, unit, 1, value + 0.0, NAN, NULL, 0};
     for (size_t i = 0; i < sizeof of_unit / sizeof *of_unit; ++i)
         if (!strcmp(unit, of_unit[i].unit)) {
             row.shown = of_unit[i].shown;
@@ -43,7 +43,7 @@ void sheet_add(Sheet *sheet, const char *section, const char *name, const char *
 void sheet_add_way(Sheet *sheet, const char *section, const char *name, const char *title, double value)
 {
     *POOL_PUSH(sheet->pool, sheet->row, sheet->rows) =
-        (SheetRow){section, name, title, "m", "m", 1, value + 0.0, NAN, NULL};
+        (SheetRow){section, name, title, "m", "m", 1, value + 0.0, NAN, NULL, 0};
 }
 
 void sheet_note(Sheet *sheet, const char *note)
@@ -93,6 +93,8 @@ static void add_modes(Sheet *sheet)
             sheet_add(sheet, section, pool_print(sheet->pool, "%s.eigenvalue", name),
                       pool_print(sheet->pool, "Eigenvalue %d", k + 1), "1/s", mode->real);
         }
+        for (int i = mode->imaginary > 0 ? 2 : 1; i > 0; --i)
+            sheet->row[sheet->rows - i].mode = k + 1;
     }
 }
 
@@ -155,6 +157,13 @@ Sheet sheet_open(Pool *pool, const Model *model, const Scene *scene, Solve solve
                   "model '%s' has no %s", model->name, model->wheels ? "free base" : "wheels");
     Sheet sheet = {.pool = pool, .model = model, .kc = kc_open(pool, model, scene, solve, NULL)};
     sheet.found = equilibrium_find_locked(pool, model, scene, solve);
+    const double lean = equilibrium_lean(sheet.found);
+    if (lean > equilibrium_tipped)
+        diag_fail((Place){scene ? scene->source : model->source, 0, 0},
+                  "bring the centre of mass between the wheels (`com`, `center`), or start the vehicle nearer to where "
+                  "it stands; --equilibrium shows how it lies there",
+                  "the vehicle does not rest on its wheels: it tips over and lies there leaning by %.0f degrees",
+                  57.29577951308232 * lean);
     const gic_model *code = sheet.found->engine->code;
     sheet.w = pool_alloc(pool, ((size_t)model->coordinates + 1) * sizeof *sheet.w);
     for (int c = 0; c < model->coordinates; ++c)
@@ -199,6 +208,8 @@ Sheet sheet_study(Pool *pool, const Model *model, const Scene *scene, const Requ
 {
     Sheet sheet = sheet_open(pool, model, scene, request->solve);
     kc_warn(sheet.kc);
+    if (!request->quiet)
+        equilibrium_warn_ranges(sheet.found, (Place){scene ? scene->source : model->source, 0, 0});
     find_modes(&sheet);
     add_modes(&sheet);
     sheet_cornering(&sheet);
@@ -223,8 +234,10 @@ void sheet_report(Pool *pool, const Model *model, const Scene *scene, const Requ
     Sheet sheet = sheet_study(pool, model, scene, request);
     if (request->compare) {
         const char *name;
+        SheetShapes *known = sheet_shapes(pool);
         Sheet other = sheet_study(pool, sheet_other(pool, model, request->compare, &name), NULL, request);
-        sheet_match_modes(&sheet, &other);
+        sheet_follow_modes(&sheet, known);
+        sheet_match_modes(&sheet, &other, known);
         sheet_compare(&sheet, &other, name);
     }
     if (request->results && path_ends(request->results, ".html"))

@@ -105,10 +105,11 @@ static double add_load(Sheet *sheet, const KcAxle *axle, int wheel, int part)
     const Wheel *one = axle->wheel[wheel].part[part];
     const int number = (int)(one - sheet->kc->model->wheel);
     const double *of = output + equilibrium_wheel(found, number);
-    sheet_add(sheet, NULL, pool_print(sheet->pool, "%s.load", one->name),
-              pool_print(sheet->pool, "Load of %s", one->name), "N", of[0]);
+    const char *name = sheet_wheel(sheet, one->name);
+    sheet_add(sheet, NULL, pool_print(sheet->pool, "%s.load", name), pool_print(sheet->pool, "Load of %s", one->name),
+              "N", of[0]);
     sheet_place(sheet, axle, wheel, part, "load");
-    sheet_add(sheet, NULL, pool_print(sheet->pool, "%s.deflection", one->name),
+    sheet_add(sheet, NULL, pool_print(sheet->pool, "%s.deflection", name),
               pool_print(sheet->pool, "Deflection of %s", one->name), "m", of[1]);
     sheet_place(sheet, axle, wheel, part, "deflection");
     const char *faded = equilibrium_faded(sheet->pool, found, output, number);
@@ -203,7 +204,8 @@ static void add_axle(Sheet *sheet, const KcAxle *axle)
         for (int i = 0; i < axle->wheels; ++i)
             if (!isnan(row.wheel[i][of_wheel[k]])) {
                 const KcQuantity *q = &kc_of_wheel[of_wheel[k]];
-                sheet_add(sheet, section, pool_print(sheet->pool, "%s.%s", axle->wheel[i].name, q->name),
+                sheet_add(sheet, section,
+                          pool_print(sheet->pool, "%s.%s", sheet_wheel(sheet, axle->wheel[i].name), q->name),
                           pool_print(sheet->pool, "%s, %s", q->title, axle->wheel[i].name), q->unit,
                           row.wheel[i][of_wheel[k]]);
                 sheet_place(sheet, axle, i, 0, q->name);

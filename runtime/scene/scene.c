@@ -24,6 +24,7 @@ typedef struct Reader {
     Pool *pool;
     const Model *model;
     Scene *scene;
+    bool own; /* not a file of the user's: of where it begins nobody is told */
 } Reader;
 
 const Item *scene_need(const Item *map, const char *key, const char *what)
@@ -408,7 +409,7 @@ static void read_initial(Reader *reader, const Item *initial)
     for (int i = 0; coordinates && i < model->coordinates; ++i) {
         const Item *item = doc_find(coordinates, model->coordinate[i].name);
         scene->given[i] = item;
-        if (item)
+        if (item && !reader->own)
             scene_warn_range(&model->coordinate[i], item->at, scene->value[i], scene->value[i]);
     }
 }
@@ -624,7 +625,7 @@ static const Scene *scene_of(Pool *pool, const Item *root, const char *path, con
                              double tolerance)
 {
     Scene *scene = pool_alloc(pool, sizeof *scene);
-    Reader reader = {pool, model, scene};
+    Reader reader = {pool, model, scene, !path};
     const Item *other = root->kind == ITEM_MAP ? doc_find(root, "gicgen") : NULL;
     if (other && !doc_find(root, "gicscene"))
         diag_fail(other->at, "name the model first, then the scene", "this is a model, where a scene is wanted");

@@ -85,8 +85,7 @@ const char *study_note(const StudySweep *sweep, const StudyNote *note)
 static void make_runs(StudySweep *sweep)
 {
     bool any = false;
-    for (int who = 0; who < 2; ++who)
-        sweep->shapes[who] = sheet_shapes(sweep->pool);
+    sweep->shapes = sheet_shapes(sweep->pool);
     sweep->run = pool_alloc(sweep->pool, (size_t)sweep->plan.runs * sizeof *sweep->run);
     for (int64_t r = 0; r < sweep->plan.runs; ++r) {
         diag_progress(pool_print(sweep->pool, "%lld of %lld", (long long)r + 1, (long long)sweep->plan.runs));
@@ -100,19 +99,13 @@ static void make_runs(StudySweep *sweep)
 
 /* ---- their numbers -------------------------------------------------------------------------------------- */
 
-static bool is_of(const SheetRow *column, const SheetRow *row)
-{
-    return !strcmp(column->unit, row->unit) &&
-           (column->place && row->place ? !strcmp(column->place, row->place) : !strcmp(column->name, row->name));
-}
-
 /* The column of a number, which is usually the one after that of the number before; -1: there is none. */
 static int column_of(const StudySweep *sweep, const SheetRow *row, int guess)
 {
-    if (guess < sweep->columns && is_of(&sweep->column[guess], row))
+    if (guess < sweep->columns && sheet_is_same(&sweep->column[guess], row))
         return guess;
     for (int c = 0; c < sweep->columns; ++c)
-        if (is_of(&sweep->column[c], row))
+        if (sheet_is_same(&sweep->column[c], row))
             return c;
     return -1;
 }
@@ -123,10 +116,12 @@ static void add_columns(StudySweep *sweep, const StudyRun *run)
     for (int i = 0, at = 0; i < run->rows; ++i) {
         const int column = column_of(sweep, &run->row[i], at);
         if (column < 0) {
+            const char *name = sheet_free_name(sweep->pool, sweep->column, sweep->columns, run->row[i].name);
             POOL_PUSH(sweep->pool, sweep->column, sweep->columns);
             memmove(sweep->column + at + 1, sweep->column + at,
                     (size_t)(sweep->columns - 1 - at) * sizeof *sweep->column);
             sweep->column[at] = run->row[i];
+            sweep->column[at].name = name;
         }
         at = (column < 0 ? at : column) + 1;
     }

@@ -48,7 +48,7 @@ typedef struct StudySweep {
     const Model *beside;      /* --compare: the other vehicle; NULL: there is none */
     const char *scene_beside; /* or a scene, which sets parameters of the same model beside; NULL: there is none */
     const char *name[2];      /* of the model and of the one beside it */
-    SheetShapes *shapes[2];   /* of the modes of both, by which they have their numbers in all runs */
+    SheetShapes *shapes;      /* of the modes of both, by which they have their numbers in all runs */
     bool *moves;              /* [varied] the one beside has this number, too */
     StudyRun *run;            /* [plan.runs] */
     const char *first;        /* what the first failure prints; NULL: nothing failed */

@@ -97,7 +97,8 @@ static void make_one(void *context)
     case STUDY_LOADS: making->sheet = kc_loads_sheet(pool, model, kc_loads_open(pool, model, scene, &request)); break;
     case STUDY_SHEET:
         making->sheet = sheet_study(pool, model, scene, &request);
-        sheet_follow_modes(&making->sheet, sweep->shapes[making->who]);
+        if (!making->who)
+            sheet_follow_modes(&making->sheet, sweep->shapes);
         break;
     case STUDY_MANOEUVRE: {
         const Manoeuvre manoeuvre = manoeuvre_drive(pool, model, &request);
@@ -168,6 +169,8 @@ static const char *hear(StudySweep *sweep, const Making *making, const Messages 
 static void put_beside(StudySweep *sweep, Making *own, Making *other, const StudyRun *run)
 {
     if (run->reason[0]) { /* as if they were its own, but for their values */
+        if (!run->reason[1])
+            sheet_follow_modes(&other->sheet, sweep->shapes);
         own->sheet = other->sheet;
         for (int i = 0; i < own->sheet.rows; ++i) {
             own->sheet.row[i].other = own->sheet.row[i].value;
@@ -178,7 +181,7 @@ static void put_beside(StudySweep *sweep, Making *own, Making *other, const Stud
     if (run->reason[1])
         return;
     if (sweep->kind == STUDY_SHEET)
-        sheet_match_modes(&own->sheet, &other->sheet);
+        sheet_match_modes(&own->sheet, &other->sheet, sweep->shapes);
     sheet_compare(&own->sheet, &other->sheet, sweep->name[1]);
 }
 
