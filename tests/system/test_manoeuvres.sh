@@ -157,7 +157,8 @@ for words in 'steady-radius radius=40' 'single-lane-change speed=15 ay=1' 'ride 
     done
 done
 
-# and 9 m aside, where all wheels are to the left of y = 0
+# and 9 m aside, where all wheels are to the left of y = 0; what warp makes of the roll of a vehicle that is alike in front and
+# behind is rounding
 plain=$root/tests/data/manoeuvre/plain.veh
 sed 's/, 0.7, /, 9.7, /g; s/, -0.7, /, 8.3, /g; s/\[0, 0, 0.5\]/[0, 9, 0.5]/g' "$plain" >"$work/aside.veh"
 for words in 'single-lane-change speed=15 ay=1' 'ride speed=10 duration=10' 'four-post speed=10 duration=10' 'fishhook from=5 speed=12'; do
@@ -165,7 +166,7 @@ for words in 'single-lane-change speed=15 ay=1' 'ride speed=10 duration=10' 'fou
     run --manoeuvre ${words%% *} "$plain" ${words#* } -q -o "$work/drawn.csv"
     # shellcheck disable=SC2086
     run --manoeuvre ${words%% *} "$work/aside.veh" ${words#* } -q -o "$work/shifted.csv"
-    check "$words aside" sh -c "awk -F, 'NR == FNR { v[\$1] = \$2; next } FNR > 1 { ++n; d = \$2 - v[\$1]; bad += !(d * d <= 1e-12 * (1e-6 + v[\$1] * v[\$1])) }
+    check "$words aside" sh -c "awk -F, 'NR == FNR { v[\$1] = \$2; next } FNR > 1 && !/^warp.roll/ { ++n; d = \$2 - v[\$1]; bad += !(d * d <= 1e-12 * (1e-6 + v[\$1] * v[\$1])) }
     END { exit !(n > 3 && !bad) }' '$work/drawn.csv' '$work/shifted.csv'"
 done
 
