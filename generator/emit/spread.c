@@ -148,14 +148,15 @@ bool is_spread(Generation *g)
     return g->style->implicit && g->style->spread && weighed_columns(g) && implicit_is_short(g);
 }
 
-/* An array of the work space, where out is not NULL; returns how many numbers it has. */
+/* An array of the work space, of rows of `columns` or, 0, of single numbers, where out is not NULL; returns how many
+ * numbers it has. */
 static int array(Text *out, int indent, const char *name, int rows, int columns)
 {
-    if (out && columns > 1)
+    if (out && columns)
         line(out, indent, "gic_real %s[%d][%d];", name, room(rows), columns);
     else if (out)
         line(out, indent, "gic_real %s[%d];", name, room(rows));
-    return room(rows) * columns;
+    return room(rows) * (columns ? columns : 1);
 }
 
 static int work_space(Generation *g, Text *out, int indent)
@@ -165,12 +166,12 @@ static int work_space(Generation *g, Text *out, int indent)
     const WheelColumns *w = columns->wheels;
     const Wheels *wheels = g->formulation->wheels;
     const int lanes = padded_lanes(columns);
-    return array(out, indent, "column", columns->size, 1) + array(out, indent, "factor", spread->kept, 1) +
-           array(out, indent, "right", g->plan->unknowns, lanes) + array(out, indent, "local", w ? w->locals : 0, 1) +
-           array(out, indent, "part", w ? w->parts : 0, lanes) + array(out, indent, "link", w ? wheels->links : 0, 1) +
-           array(out, indent, "rate", w ? g->model->fast_states : 0, 1) +
-           array(out, indent, "torque", w ? 2 * wheels->count : 0, 1) +
-           array(out, indent, "grip", w ? GRIP_NUMBERS * wheels->count : 0, 1);
+    return array(out, indent, "column", columns->size, 0) + array(out, indent, "factor", spread->kept, 0) +
+           array(out, indent, "right", g->plan->unknowns, lanes) + array(out, indent, "local", w ? w->locals : 0, 0) +
+           array(out, indent, "part", w ? w->parts : 0, lanes) + array(out, indent, "link", w ? wheels->links : 0, 0) +
+           array(out, indent, "rate", w ? g->model->fast_states : 0, 0) +
+           array(out, indent, "torque", w ? 2 * wheels->count : 0, 0) +
+           array(out, indent, "grip", w ? GRIP_NUMBERS * wheels->count : 0, 0);
 }
 
 const char *spread_numbers(Generation *g)
