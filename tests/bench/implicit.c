@@ -59,7 +59,8 @@ static double run(gic_method method, double step, int keep, int spread)
     return status == GIC_OK ? between(&from, &to) / steps : -1;
 }
 
-/* The same, step by step; rounds start at other times, so that what interrupts a program regularly meets other steps. */
+/* The same, step by step; rounds start at other times, so that what interrupts a program regularly meets other steps.
+ */
 static void run_steps(int w, int round)
 {
     const struct timespec wait = {0, 370000 * round};
