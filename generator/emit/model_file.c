@@ -726,35 +726,16 @@ const Insertions code_points = {(const char *const[]){"model.c.in", "independent
 /* All templates of the code are checked, those too that this model does not need. */
 static void check_templates(Pool *pool, const char *templates)
 {
-    const Insertions *const points[] = {&code_points,
-                                        &header_points,
-                                        &derive_points,
-                                        &subset_points,
-                                        &lane_class_points,
-                                        &lane_width_points,
-                                        &lane_fold_points,
-                                        &assumption_points,
-                                        &road_points,
-                                        &wheels_points,
-                                        &wheel_points,
-                                        &wheel_lanes_points,
-                                        &wheel_vector_points,
-                                        &dual_rate_points,
-                                        &powertrain_points,
-                                        &states_points,
-                                        &states_rate_points,
-                                        &tangent_points,
-                                        &tangent_class_points,
-                                        &tangent_header_points,
-                                        &columns_points,
-                                        &columns_class_points,
-                                        &columns_wheels_points,
-                                        &columns_wheel_points,
-                                        &implicit_points,
-                                        &curve_points,
-                                        &share_points,
-                                        &side_points,
-                                        NULL};
+    const Insertions *const points[] = {&code_points,          &header_points,         &derive_points,
+                                        &subset_points,        &lane_class_points,     &lane_width_points,
+                                        &lane_fold_points,     &assumption_points,     &road_points,
+                                        &wheels_points,        &wheel_points,          &wheel_lanes_points,
+                                        &wheel_vector_points,  &dual_rate_points,      &powertrain_points,
+                                        &states_points,        &states_rate_points,    &tangent_points,
+                                        &tangent_class_points, &tangent_header_points, &columns_points,
+                                        &columns_class_points, &columns_wheels_points, &columns_wheel_points,
+                                        &implicit_points,      &curve_points,          &flat_points,
+                                        &share_points,         &side_points,           NULL};
     templates_check(pool, templates, points);
 }
 
