@@ -247,28 +247,26 @@ LANE_FUNCTION gic_lane GIC_LANES_NAME(lane_select_, GIC_LANES)(gic_mask m, gic_l
     return (gic_lane)((m & (gic_mask)yes) | (~m & (gic_mask)no));
 }
 
-/* The processor's instruction, where compilers would take four for a comparison and a selection: x where x < y, else y,
- * which is what it does with NaN and zeros of both signs, too. */
+/* x = the smaller or larger one of x and y by the processor's instruction, `bytes` at a time from lane l on, where
+ * compilers would take four for a comparison and a selection: x where x < y (x > y), else y, which is what it does with
+ * NaN and zeros of both signs, too. */
+#define GIC_CHOOSE(bytes, instruction, x, y, l) \
+    for (; l + bytes / GIC_REAL_BYTES <= GIC_LANES; l += bytes / GIC_REAL_BYTES) { \
+        gic_real a __attribute__((vector_size(bytes))), b __attribute__((vector_size(bytes))); \
+        memcpy(&a, (const char *)&x + l * GIC_REAL_BYTES, sizeof a); \
+        memcpy(&b, (const char *)&y + l * GIC_REAL_BYTES, sizeof b); \
+        a = instruction(a, b); \
+        memcpy((char *)&x + l * GIC_REAL_BYTES, &a, sizeof a); \
+    }
+
 LANE_FUNCTION gic_lane GIC_LANES_NAME(lane_min_, GIC_LANES)(gic_lane x, gic_lane y)
 {
     int l = 0;
 #ifdef __AVX512F__
-    for (; (l + 64 / GIC_REAL_BYTES) <= GIC_LANES; l += 64 / GIC_REAL_BYTES) {
-        gic_real a __attribute__((vector_size(64))), b __attribute__((vector_size(64)));
-        memcpy(&a, (const char *)&x + l * GIC_REAL_BYTES, sizeof a);
-        memcpy(&b, (const char *)&y + l * GIC_REAL_BYTES, sizeof b);
-        a = GIC_LEAST_64(a, b);
-        memcpy((char *)&x + l * GIC_REAL_BYTES, &a, sizeof a);
-    }
+    GIC_CHOOSE(64, GIC_LEAST_64, x, y, l)
 #endif
 #ifdef __AVX__
-    for (; l + 32 / GIC_REAL_BYTES <= GIC_LANES; l += 32 / GIC_REAL_BYTES) {
-        gic_real a __attribute__((vector_size(32))), b __attribute__((vector_size(32)));
-        memcpy(&a, (const char *)&x + l * GIC_REAL_BYTES, sizeof a);
-        memcpy(&b, (const char *)&y + l * GIC_REAL_BYTES, sizeof b);
-        a = GIC_LEAST_32(a, b);
-        memcpy((char *)&x + l * GIC_REAL_BYTES, &a, sizeof a);
-    }
+    GIC_CHOOSE(32, GIC_LEAST_32, x, y, l)
 #endif
     return l < GIC_LANES ? LANE_SELECT((gic_mask)(x < y), x, y) : x;
 }
@@ -277,22 +275,10 @@ LANE_FUNCTION gic_lane GIC_LANES_NAME(lane_max_, GIC_LANES)(gic_lane x, gic_lane
 {
     int l = 0;
 #ifdef __AVX512F__
-    for (; (l + 64 / GIC_REAL_BYTES) <= GIC_LANES; l += 64 / GIC_REAL_BYTES) {
-        gic_real a __attribute__((vector_size(64))), b __attribute__((vector_size(64)));
-        memcpy(&a, (const char *)&x + l * GIC_REAL_BYTES, sizeof a);
-        memcpy(&b, (const char *)&y + l * GIC_REAL_BYTES, sizeof b);
-        a = GIC_MOST_64(a, b);
-        memcpy((char *)&x + l * GIC_REAL_BYTES, &a, sizeof a);
-    }
+    GIC_CHOOSE(64, GIC_MOST_64, x, y, l)
 #endif
 #ifdef __AVX__
-    for (; l + 32 / GIC_REAL_BYTES <= GIC_LANES; l += 32 / GIC_REAL_BYTES) {
-        gic_real a __attribute__((vector_size(32))), b __attribute__((vector_size(32)));
-        memcpy(&a, (const char *)&x + l * GIC_REAL_BYTES, sizeof a);
-        memcpy(&b, (const char *)&y + l * GIC_REAL_BYTES, sizeof b);
-        a = GIC_MOST_32(a, b);
-        memcpy((char *)&x + l * GIC_REAL_BYTES, &a, sizeof a);
-    }
+    GIC_CHOOSE(32, GIC_MOST_32, x, y, l)
 #endif
     return l < GIC_LANES ? LANE_SELECT((gic_mask)(x > y), x, y) : x;
 }
@@ -539,8 +525,7 @@ LANE_FUNCTION gic_lane GIC_LANES_NAME(lane_small_asin_, GIC_LANES)(gic_lane x, g
     return x + x * (z * share);
 }
 
-/* Beyond 1/2 by the half-angle formula. */
-/* Where no lane asks for it, the root is left out. */
+/* Beyond 1/2 by the half-angle formula; where no lane is, its root is left out. */
 LANE_FUNCTION gic_lane GIC_LANES_NAME(lane_asin_, GIC_LANES)(gic_lane x)
 {
     const gic_lane a = LANE_FABS(x);

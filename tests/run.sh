@@ -13,7 +13,7 @@ dry=
 [ "$1" != --dry-run ] || { dry=yes && shift; }
 case $1 in
 quick) time="the tests of tests/quick.txt, which take three minutes on two processors" ;;
-'') time="every test, which takes half an hour to an hour on two processors" ;;
+'') time="every test, which takes an hour to an hour and a half on two processors" ;;
 *) time="$*" ;;
 esac
 if [ -n "$dry" ]; then

@@ -584,6 +584,7 @@ void kc_warn(const Kc *kc)
                   kc->rubbers > 1 ? pool_print(kc->pool, "%d bushings, %s,", kc->rubbers, names)
                                   : pool_print(kc->pool, "bushing %s", names),
                   kc->rubbers > 1 ? "are" : "is");
+    /* with bushings it may be these that hold it, which the warning above covers */
     for (int a = 0; a < kc->axles && !kc->rubbers; ++a)
         if (kc->axle[a].loose)
             diag_warn((Place){kc->model->source, 0, 0},

@@ -126,11 +126,11 @@ static int pair_points(const SheetMode *a, const SheetMode *b, int (*pair)[2])
 }
 
 /* Of the shapes of two modes. */
-static double shapes_alike(const SheetMode *one, const SheetMode *other)
+static double shapes_alike(Pool *pool, const SheetMode *one, const SheetMode *other)
 {
     const SheetShape *a = &one->shape, *b = &other->shape;
     double aa = 0, bb = 0, re = 0, im = 0;
-    int pair[SHEET_CORNERS + one->wheels][2];
+    int(*pair)[2] = pool_alloc(pool, (size_t)(SHEET_CORNERS + one->wheels) * sizeof *pair);
     const int points = pair_points(one, other, pair);
     for (int k = 0; k < points; ++k)
         for (int i = 0; i < 3; ++i) {
@@ -157,12 +157,12 @@ static double states_shared(const SheetMode *a, const SheetMode *b)
 }
 
 /* From 0 to 1. */
-static double likeness(const SheetMode *a, const SheetMode *b)
+static double likeness(Pool *pool, const SheetMode *a, const SheetMode *b)
 {
     if (a->swings != b->swings || a->still != b->still)
         return 0;
     if (!a->still)
-        return a->shape.points && b->shape.points ? shapes_alike(a, b) : 0;
+        return a->shape.points && b->shape.points ? shapes_alike(pool, a, b) : 0;
     const double size = fmax(hypot(a->real, a->imaginary), hypot(b->real, b->imaginary));
     return states_shared(a, b) > alike ? 1 - hypot(a->real - b->real, a->imaginary - b->imaginary) / size : 0;
 }
@@ -175,7 +175,7 @@ static void match(Pool *pool, const SheetShapes *a, const SheetShapes *b, bool *
     double *alike_of = pool_alloc(pool, ((size_t)a->count * (size_t)b->count + 1) * sizeof *alike_of);
     for (int i = 0; i < a->count; ++i)
         for (int k = 0; k < b->count; ++k)
-            alike_of[i * b->count + k] = likeness(&a->motion[i], &b->motion[k]);
+            alike_of[i * b->count + k] = likeness(pool, &a->motion[i], &b->motion[k]);
     for (;;) {
         int best[2] = {-1, -1};
         for (int i = 0; i < a->count; ++i)
