@@ -33,7 +33,7 @@ lever = dot(cross([0, 1, 0], sub(P['spring_arm'], P['pivot'])), spring) / norm(s
 reach = P['pivot'][0] - P['rear_hub'][0]                                                # rise of the hub a rad
 ratio = lever / reach
 k = bike.force('spring')['stiffness']
-near('rear wheel rate', bike.sheet['rear.wheel_rate'], k * ratio ** 2, 0.1 * k * ratio ** 2)
+near('rear wheel rate', bike.sheet['wheel.rear.wheel_rate'], k * ratio ** 2, 0.1 * k * ratio ** 2)
 arm, fork = bike.bodies['arm'], bike.bodies['fork']
 held = (load['rear'] * reach - arm['mass'] * GRAVITY * (P['pivot'][0] - arm['com'][0])) / abs(lever)
 d = bike.run('motorcycle_circle')
@@ -42,7 +42,7 @@ near('force of the spring at rest by moments about the pivot', rest, held, 0.02 
 
 # ---- the fork slides along the steering axis: the wheel's load along it
 k = bike.force('springs')['stiffness']
-near('front wheel rate', bike.sheet['front.wheel_rate'], k / math.cos(CASTER) ** 2, 1e-3 * k)
+near('front wheel rate', bike.sheet['wheel.front.wheel_rate'], k / math.cos(CASTER) ** 2, 1e-3 * k)
 held = (load['front'] - fork['mass'] * GRAVITY) * math.cos(CASTER)
 near('force of the fork at rest', k * (d['travel.value'][0] - bike.force('springs')['free']), held, 0.01 * held)
 
