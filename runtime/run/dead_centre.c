@@ -13,6 +13,8 @@
 #include "subset/subset.h"
 #include "world/world.h"
 
+#include <gsl/gsl_errno.h>
+#include <gsl/gsl_min.h>
 #include <math.h>
 #include <string.h>
 
@@ -21,6 +23,7 @@ enum {
     CLOSE = 60,  /* shorter steps towards it */
     ROUND = 800, /* steps after it in which other coordinates are watched */
     CORRECTIONS = 12,
+    SHORTENINGS = 40,   /* of two usual steps, in which the smallest pivot is least */
     UNKNOWNS_MOST = 280 /* larger mechanisms take too long */
 };
 
@@ -386,34 +389,92 @@ static DeadCentre crossed(const Search *search, double value)
                              c->name, c->name, value)};
 }
 
-/* Search along one coordinate. direction: sign of its rate, 0: both. */
-static DeadCentre look_ahead(Search *search, double direction, double value)
+/* A place on the way, and the search that it is of. */
+typedef struct From {
+    Search *search;
+    double *place; /* as save() has it */
+    double value;  /* of the released coordinate */
+} From;
+
+/* The smallest pivot `length` further on. */
+static double least_at(double length, void *context)
 {
-    double place[2 * search->n], length = usual_step;
+    const From *from = context;
+    save(from->search, from->place, true);
+    return step_on(from->search, length) ? from->search->least : 0;
+}
+
+/* Where two ranks are lost at once, as of equal parallel arms that become vertical, the determinant touches 0 and keeps
+ * its sign. True if it does so between `from` and two steps on, where the pivot after one step is smaller than at both
+ * ends, at *value. */
+static bool touches(From *from, double *value)
+{
+    gsl_function least = {least_at, from};
+    gsl_min_fminimizer *search = gsl_min_fminimizer_alloc(gsl_min_fminimizer_goldensection);
+    gsl_error_handler_t *handler = gsl_set_error_handler_off();
+    double smallest = INFINITY;
+    if (search && !gsl_min_fminimizer_set(search, &least, usual_step, 0, 2 * usual_step))
+        for (int k = 0; k < SHORTENINGS && !gsl_min_fminimizer_iterate(search); ++k)
+            smallest = gsl_min_fminimizer_f_minimum(search);
+    if (smallest < crossing) {
+        /* poses are known to the root of the residual only there: from beside it, where the pivot is a straight line */
+        const double x = gsl_min_fminimizer_x_minimum(search), beside = usual_step / 20;
+        double at[2] = {from->value, from->value};
+        const double before = least_at(x - beside, from);
+        speed(from->search, &at[0]);
+        const double after = least_at(x + beside, from);
+        speed(from->search, &at[1]);
+        *value = (at[0] * after + at[1] * before) / (before + after);
+    }
+    gsl_set_error_handler(handler);
+    if (search)
+        gsl_min_fminimizer_free(search);
+    return smallest < crossing;
+}
+
+/* Search along one coordinate. direction: sign of its rate, 0: both; *value: where the coordinate is, and where it is
+ * at the finding. */
+static DeadCentre look_ahead(Search *search, double direction, double *value)
+{
+    double place[2 * search->n], earlier[2 * search->n], length = usual_step;
     DeadCentre none = {NULL, NULL};
-    if (!set_out(search, direction, &value))
+    if (!set_out(search, direction, value))
         return none;
-    double before = speed(search, &value);
+    double before = speed(search, value), least[2] = {0, search->least};
+    From from = {search, earlier, *value};
     /* A place that stopped a step lies within that step: four of a quarter are stopped again. Where they pass, what
      * stopped the long one was its length. */
     for (int usual = 0, shorter = 0, passed = 0; usual < NEAR && shorter < CLOSE;) {
-        const double from = value;
+        const double here = *value;
         save(search, place, false);
         const int sign = step_on(search, length);
-        const double now = speed(search, &value);
+        const double now = speed(search, value);
         if (sign && sign * search->sign > 0 && now * before > 0) {
+            double there[2 * search->n];
+            save(search, there, false);
+            const double further = *value, pivot = search->least;
+            if (length == usual_step && least[1] < least[0] && least[1] < pivot && touches(&from, value))
+                return crossed(search, *value);
+            save(search, there, true);
+            memcpy(earlier, place, sizeof earlier);
+            from.value = here;
+            *value = further;
+            least[0] = least[1];
+            least[1] = pivot;
             before = now;
             ++*(length < usual_step ? &shorter : &usual);
             if (length < usual_step && ++passed > 4)
                 length *= 4, passed = 0;
+            if (length < usual_step)
+                least[0] = least[1] = 0;
             continue;
         }
         passed = 0;
         const bool cross = sign * search->sign <= 0 || search->least < crossing;
         save(search, place, true);
-        value = from;
+        *value = here;
         if (length < close_enough)
-            return cross ? crossed(search, from) : turned_back(search, from);
+            return cross ? crossed(search, here) : turned_back(search, here);
         length /= 4;
     }
     return none;
@@ -498,20 +559,23 @@ DeadCentre dead_centre_find(Pool *pool, const Model *model, const gic_model *cod
         return none;
     Search search = {
         .pool = pool, .world = world_new(pool, model_assemble(pool, model, sequence), sequence), .lost = lost};
-    double rate[model->coordinates + 1];
-    for (int i = 0; i < lost->deps; ++i) {
-        const int c = lost->dep[i];
-        for (int way = 0; way < 2; ++way) {
-            if (!place_world(search.world, code, last, rate))
-                return none;
-            if (way && rate[c] != 0)
-                break;
-            search_subset(&search, &all, c);
-            const double direction = rate[c] != 0 ? rate[c] : way ? -1 : 1;
-            const DeadCentre found = look_ahead(&search, direction, search.world->x[c]);
-            if (found.finding)
-                return found;
+    DeadCentre found = none;
+    double rate[model->coordinates + 1], soonest = INFINITY;
+    /* Of coordinates that move the one that is there first; of those at rest any, where no other finds one. */
+    for (int k = 0; k < 3 * lost->deps && (k < lost->deps || !found.finding); ++k) {
+        const int c = lost->dep[k % lost->deps];
+        if (!place_world(search.world, code, last, rate))
+            return none;
+        if ((rate[c] != 0) != (k < lost->deps))
+            continue;
+        search_subset(&search, &all, c);
+        double value = search.world->x[c];
+        const DeadCentre one = look_ahead(&search, rate[c] != 0 ? rate[c] : k < 2 * lost->deps ? 1 : -1, &value);
+        const double time = rate[c] != 0 ? (value - search.world->x[c]) / rate[c] : 0;
+        if (one.finding && time < soonest) {
+            found = one;
+            soonest = time;
         }
     }
-    return none;
+    return found;
 }
