@@ -640,10 +640,10 @@ static int check_step(const gic_model *model, void *self, gic_real step, gic_rea
     return GIC_OK;
 }
 
-/* True if head.most allows steps without events. */
-static int has_room(const gic_head *head, int32_t ratio)
+/* True if head.locate is known, and head.most allows steps without events. */
+static int takes_options(const gic_head *head, int32_t ratio)
 {
-    return head->most == 0 || head->most >= GIC_LEAST_MOST(ratio);
+    return head->locate >= 0 && head->locate <= 2 && (head->most == 0 || head->most >= GIC_LEAST_MOST(ratio));
 }
 
 /* True if the step continues the one before it, so that its history is valid. */
@@ -1423,7 +1423,7 @@ static int march(const gic_model *model, void *self, gic_real step)
     gic_real *input = array_at(self, model->input_offset);
     gic_real *input_before =
         array_at(self, model->scratch_offset) + GIC_SCRATCH(model->slow_count + model->fast_count, 0);
-    if (!model->march || !has_room(head, 1) || model->abi_version != GIC_ABI_VERSION ||
+    if (!model->march || !takes_options(head, 1) || model->abi_version != GIC_ABI_VERSION ||
         model->real_size != sizeof(gic_real) || !(time + step > time))
         return 0;
     const int64_t rhs_count = head->rhs_count, newton_count = head->newton_count, late_count = head->late_count,
@@ -1473,7 +1473,7 @@ static int plain_step(const gic_model *model, void *self, gic_real step, int32_t
     int status = check_step(model, self, step, step);
     if (status != GIC_OK)
         return status;
-    if (!is_method(model, method) || !has_room(head, 1) || (method > GIC_RK4 && head->most > 0))
+    if (!is_method(model, method) || !takes_options(head, 1) || (method > GIC_RK4 && head->most > 0))
         return head->status = GIC_ERROR_ARGUMENT;
 
     const int32_t n = model->slow_count + model->fast_count;
@@ -1723,7 +1723,7 @@ static int plain_steady(const gic_model *model, void *self, gic_real step, int32
     if (status != GIC_OK)
         return status;
     gic_head *head = (gic_head *)self;
-    if (!gic_finite(&steady, 1) || steady < GIC_R(0.0) || !has_room(head, ratio))
+    if (!gic_finite(&steady, 1) || steady < GIC_R(0.0) || !takes_options(head, ratio))
         return head->status = GIC_ERROR_ARGUMENT;
 
     const int same = goes_on(head, step, GIC_AB3, ratio);

@@ -133,7 +133,7 @@ typedef struct gic_head {
     int32_t event;      /* what GIC_ERROR_EVENTS is about: 1 + the index of a contact, or 1 + contact_count + an index
                          * in discrete[]; 0: nothing; see gic_event_name */
     int32_t locate;     /* for the caller: 1: steps are made in parts where a contact is made or lost within them; 2:
-                         * also where a contact's load bends too much within them */
+                         * also where a contact's load bends too much within them; others: GIC_ERROR_ARGUMENT */
     int32_t most;       /* for the caller: the most evaluations of a step, right-hand sides and looks; 0: no bound, else
                          * GIC_LEAST_MOST or more. What is left of a step in which they don't suffice for the next
                          * contact or change of gear goes over it, and passed_count counts it */

@@ -104,13 +104,31 @@ static void find_coordinates(Pool *pool, Ghost *ghost)
     }
 }
 
+/* Euler parameters are numbers of a file: between rows they are normalised, which hides what is none. 1 % is more than
+ * digits that are left out. A row without an orientation is told. */
+static bool has_turns(const Ghost *ghost)
+{
+    for (int row = 0; ghost->point && ghost->euler && row < ghost->table->rows; ++row) {
+        const double *e = ghost->table->value + row * ghost->table->columns + ghost->turn;
+        const double length = hypot(hypot(e[0], e[1]), hypot(e[2], e[3]));
+        if (!(fabs(length - 1) < 0.01)) {
+            diag_warn(csv_place(ghost->table, row),
+                      "write four numbers whose squares add up to 1; 1, 0, 0, 0 is no turn",
+                      "the Euler parameters '%s' and on are no orientation: their length is %.4g",
+                      ghost->table->name[ghost->turn], length);
+            return false;
+        }
+    }
+    return true;
+}
+
 Ghost *ghost_new(Pool *pool, const Model *model, const Engine *engine, const Scene *scene, const CsvTable *table)
 {
     Ghost *ghost = pool_alloc(pool, sizeof *ghost);
     *ghost = (Ghost){.model = model, .engine = engine, .table = table};
     const bool placed = !model->free_base || find_base(pool, ghost);
     find_coordinates(pool, ghost);
-    if (!placed || (!model->free_base && !ghost->count))
+    if (!placed || !has_turns(ghost) || (!model->free_base && !ghost->count))
         return NULL;
     const size_t numbers = (size_t)engine->standard_count + 1;
     ghost->self = instance_new(pool, engine);

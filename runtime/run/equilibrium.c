@@ -456,6 +456,9 @@ static _Noreturn void fail(const Search *s, Place at)
                          "to where it can rest";
     if (of_base && !found->model->wheels)
         remedy = "nothing carries the base: give the model wheels, or forces that hold it";
+    else if (of_base && equilibrium_lean(found) > equilibrium_tipped)
+        remedy = "the vehicle tips over: bring the centre of mass between the wheels (`com`, `center`), or start the "
+                 "vehicle nearer to where it stands";
     else if (of_base && !is_carried(found))
         remedy = "no wheel touches the road: start the vehicle upright and just above it (`initial: position`)";
     else if (may_roll && (of_base || worst >= 2 * linear->places))

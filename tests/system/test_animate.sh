@@ -60,6 +60,15 @@ check 'results that do not tell where the base is' exits 0
 check 'results that do not tell where the base is: why' says 'a second vehicle needs outputs'
 check 'results that do not tell where the base is: no vehicle' grep -q '"ghost":null' "$work/curves.html"
 
+# Euler parameters of the second vehicle that are none, in its third row
+for length in 0 2; do
+    awk -F, -v OFS=, -v length_="$length" 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i ~ /^chassis_orientation[.]e0/) c = i }
+        NR == 4 { $c = length_; $(c + 1) = $(c + 2) = $(c + 3) = 0 } { print }' "$work/<b>later&.csv" >"$work/wrong.csv"
+    run "$root/models/hmmwv_vehicle.veh" "$later" --animate "$work/wrong.html" --with "$work/wrong.csv"
+    check "Euler parameters of length $length" says "wrong.csv:4:1: warning: the Euler parameters 'chassis_orientation.e0' and on are no orientation: their length is $length"
+    check "Euler parameters of length $length: no vehicle" grep -q '"ghost":null' "$work/wrong.html"
+done
+
 # outputs that tell how wheels are turned, for the table of the wheels
 {
     printf 'gicgen: 1\ninclude: %s\nmodel: turning\noutputs:\n' "$root/models/hmmwv_vehicle.veh"

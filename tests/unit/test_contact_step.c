@@ -355,10 +355,32 @@ static void test_bound(void **state)
             }
 }
 
+/* Numbers that head.locate does not have, and its bounds, leave the instance as it was. */
+static void test_arguments(void **state)
+{
+    (void)state;
+    static const int32_t wrong[] = {3, -1, 2147483647};
+    for (int32_t method = GIC_AB3; method <= GIC_RK4; ++method)
+        for (size_t i = 0; i < sizeof wrong / sizeof *wrong; ++i) {
+            Masses m = {.omega = 5, .state = {1, 1, 1}};
+            for (int before = 0; before < 6; before += 3) {
+                for (int k = 0; k < before; ++k)
+                    assert_int_equal(gic_step(&masses_model, &m, 0.01, method), GIC_OK);
+                m.head.locate = wrong[i];
+                const Masses good = m;
+                assert_int_equal(gic_step(&masses_model, &m, 0.01, method), GIC_ERROR_ARGUMENT);
+                assert_memory_equal(m.state, good.state, sizeof m.state);
+                assert_true(gic_time(&m) == gic_time(&good));
+                m.head.locate = 0;
+                assert_int_equal(gic_step(&masses_model, &m, 0.01, method), GIC_OK);
+            }
+        }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_touch_and_leave), cmocka_unit_test(test_leave_and_touch),
-                                       cmocka_unit_test(test_loads), cmocka_unit_test(test_most),
-                                       cmocka_unit_test(test_bound)};
+                                       cmocka_unit_test(test_loads),           cmocka_unit_test(test_most),
+                                       cmocka_unit_test(test_bound),           cmocka_unit_test(test_arguments)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
