@@ -55,7 +55,7 @@ static int condition_back(Back *back, const TrailStep *last, double weight)
     memset(by_output, 0, sizeof by_output);
     const int contact = last->condition - run->happened.conditions;
     if (contact < 0)
-        by_output[run->outputs + last->condition] = weight;
+        by_output[tangent_guard_output(run, last->condition)] = weight;
     const int status = contact < 0 ? outputs_back(back, guard, by_output) : press_back(back, guard, contact, weight);
     if (status != GIC_OK)
         return status;
@@ -79,7 +79,11 @@ int located_back(Back *back, int64_t at, double weight)
     const TrailStep *last = trail_step(run->trail, at);
     const size_t size = (size_t)run->states * sizeof(double);
     const DriveSlope drive = back->drive;
+    /* At 0 the number of a contact has two slopes, of the load and of the distance: on whose side it is, rounding tells,
+     * and so it has to be evaluated from the same guess both times. */
+    Instance *guess = run->happened.inner->self;
     double state[run->states + 1], sums[back->all_sums + 1];
+    memcpy(guess, run->self, run->code->size);
     memcpy(state, back->state, size);
     memcpy(sums, back->sums, (size_t)back->all_sums * sizeof *sums);
     /* by how much the condition grows where the piece is longer */
@@ -95,6 +99,7 @@ int located_back(Back *back, int64_t at, double weight)
         status = piece_back(back, last->piece, at, weight);
     const double by_time = back->clock[last->later];
     memcpy(state, back->state, size);
+    memcpy(run->self, guess, run->code->size);
     if (status == GIC_OK)
         status = condition_back(back, last, -by_time / slope);
     if (status == GIC_OK)

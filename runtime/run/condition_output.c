@@ -1,12 +1,14 @@
 /* SPDX-License-Identifier: MIT
  * Conditions of scenes as outputs. */
 #include "run/condition_output.h"
+#include "expression/expression.h"
 #include "model/tunable.h"
 #include "scene/action.h"
 
 #include <string.h>
 
 static const char *const name = "a condition of the scene"; /* no name of a model has a blank */
+static const char *const guard_name = "the guard of a condition";
 
 int condition_count(const Scene *scene)
 {
@@ -77,6 +79,60 @@ static const Law *with_signals(Pool *pool, Model *model, const Model *from, cons
     return copy;
 }
 
+static const Law *call(Pool *pool, Op op, const Law *a, const Law *b)
+{
+    Law *law = pool_alloc(pool, sizeof *law);
+    *law = (Law){.op = LAW_CALL, .call = (int)op, .arg = {a, b}, .size = 1 + a->size + (b ? b->size : 0)};
+    return law;
+}
+
+static bool is_call(const Law *law, Op op)
+{
+    return law->op == LAW_CALL && law->call == (int)op;
+}
+
+/* A law that is above 0 where this one is: of if(c, p, q) where c and p are, or q is and c is not. */
+static const Law *guard_of(Pool *pool, const Law *law)
+{
+    if (is_call(law, OP_MIN) || is_call(law, OP_MAX))
+        return call(pool, (Op)law->call, guard_of(pool, law->arg[0]), guard_of(pool, law->arg[1]));
+    if (is_call(law, OP_NEG) && is_call(law->arg[0], OP_POSITIVE)) {
+        const Law *jump = law->arg[0];
+        Law turned = *jump;
+        for (int i = 1; i < 3; ++i)
+            turned.arg[i] = call(pool, OP_NEG, jump->arg[i], NULL);
+        return guard_of(pool, &turned);
+    }
+    if (!is_call(law, OP_POSITIVE))
+        return law;
+    const Law *choice = guard_of(pool, law->arg[0]), *yes = guard_of(pool, law->arg[1]);
+    const Law *no = guard_of(pool, law->arg[2]);
+    return call(pool, OP_MAX, call(pool, OP_MIN, choice, yes),
+                call(pool, OP_MIN, call(pool, OP_NEG, choice, NULL), no));
+}
+
+/* True if the law follows from more than numbers and the time. */
+static bool has_state(const Law *law)
+{
+    if (!law->arg[0])
+        return law->op != LAW_NUMBER && law->op != LAW_TIME;
+    bool has = false;
+    for (int i = 0; i < 3 && law->arg[i]; ++i)
+        has = has || has_state(law->arg[i]);
+    return has;
+}
+
+/* True if there is an `if` in the law or in signals that it reads. */
+static bool has_jump(const Model *model, const Law *law)
+{
+    if (is_call(law, OP_POSITIVE) && has_state(law->arg[0]))
+        return true;
+    bool has = law->op == LAW_SIGNAL && model->signal[law->index].law && has_jump(model, model->signal[law->index].law);
+    for (int i = 0; i < 3 && law->arg[i]; ++i)
+        has = has || has_jump(model, law->arg[i]);
+    return has;
+}
+
 static int locals_of(const Law *law)
 {
     int count = law->op == LAW_LOCAL;
@@ -91,33 +147,46 @@ Model *condition_outputs(Pool *pool, Model *from, const Scene *scene)
     if (!count)
         return from;
     const Actions *actions = scene->actions;
+    const Law *law[2][count];
     int locals = 0;
-    for (int i = 0; i < count; ++i)
-        locals += locals_of(actions->action[i].law);
+    for (int i = 0; i < count; ++i) {
+        law[0][i] = actions->action[i].law;
+        law[1][i] = guard_of(pool, law[0][i]);
+        locals += locals_of(law[0][i]) + locals_of(law[1][i]);
+    }
     Model *model = pool_alloc(pool, sizeof *model);
     *model = *from;
     /* where they stay: tunable numbers are found by their addresses */
-    model->signal = pool_alloc(pool, (size_t)(from->signals + count + locals + 1) * sizeof *model->signal);
+    model->signal = pool_alloc(pool, (size_t)(from->signals + 2 * count + locals + 1) * sizeof *model->signal);
     for (int i = 0; i < from->signals; ++i) {
         model->signal[i] = from->signal[i];
         output_copy(from, &model->signal[i].output, &from->signal[i].output);
     }
-    model->output = pool_alloc(pool, (size_t)(from->outputs + count + 1) * sizeof *model->output);
+    model->output = pool_alloc(pool, (size_t)(from->outputs + 2 * count + 1) * sizeof *model->output);
     for (int i = 0; i < from->outputs; ++i)
         output_copy(from, &model->output[i], &from->output[i]);
-    for (int i = 0; i < count; ++i) {
-        const Action *action = &actions->action[i];
-        const Law *law = with_signals(pool, model, from, actions, action->law);
-        model->signal[model->signals++] = (Signal){.name = action->text, .unit = "1", .at = action->at, .law = law};
-        model->output[model->outputs++] = (Output){.name = name,
+    for (int i = 0; i < 2 * count; ++i) {
+        const Action *action = &actions->action[i % count];
+        const char *const called = i < count ? name : guard_name;
+        const Law *own = with_signals(pool, model, from, actions, law[i / count][i % count]);
+        model->signal[model->signals++] = (Signal){.name = action->text, .unit = "1", .at = action->at, .law = own};
+        model->output[model->outputs++] = (Output){.name = called,
                                                    .at = action->at,
                                                    .type = OUTPUT_SIGNAL,
                                                    .index = model->signals - 1,
                                                    .count = 1,
-                                                   .component = {name},
+                                                   .component = {called},
                                                    .unit = {"1"},
                                                    .hidden = true};
         ++model->output_components;
     }
     return model;
+}
+
+bool condition_jumps(const Model *model, int c)
+{
+    for (int i = 0; i < model->outputs; ++i)
+        if (!strcmp(model->output[i].name, guard_name) && c-- == 0)
+            return has_jump(model, model->signal[model->output[i].index].law);
+    return false;
 }

@@ -11,6 +11,6 @@ Scalar scalar_read(Pool *pool, const Model *from, const Scene *scene, const char
     const char *formula = integral ? integral : maximum ? maximum : text;
     Model *model = formula_output(pool, from, "--gradient", "gradient", formula);
     model = condition_outputs(pool, model, scene);
-    formula_alone(pool, model, 1 + condition_count(scene));
+    formula_alone(pool, model, 1 + 2 * condition_count(scene));
     return (Scalar){integral ? SCALAR_INTEGRAL : maximum ? SCALAR_MAXIMUM : SCALAR_END, model};
 }

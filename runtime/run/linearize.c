@@ -521,6 +521,8 @@ int linear_pull(const Linear *linear, const Instance *self, LinearPart of, int o
     if (status != GIC_OK)
         return status;
     memset(linear->link[1], 0, (size_t)linear->engine->code.link_count * sizeof *weight);
+    /* results that are not asked for, as conditions behind the formula, have no weight, whatever stood there */
+    memset(linear->drate, 0, (size_t)linear->results * sizeof *weight);
     memcpy(result.number, weight, (size_t)result.count * sizeof *weight);
     const int infinite = journal_back(linear->journal);
     gather_back(linear);
@@ -678,6 +680,7 @@ Linear *linear_open(Pool *pool, const Engine *engine)
     linear->evaluated = pool_alloc(pool, states * sizeof(double));
     linear->rate = pool_alloc(pool, results * sizeof(double));
     linear->drate = pool_alloc(pool, results * sizeof(double));
+    linear->results = (int)results;
     linear->choices = f->model->powertrain ? 2 * f->model->powertrain->forward : 0;
     for (int side = 0; side < 2; ++side) {
         linear->choice[side] = pool_alloc(pool, (size_t)(linear->choices + 1) * sizeof(double));

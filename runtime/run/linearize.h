@@ -43,6 +43,7 @@ typedef struct Linear {
     Direction along;         /* work */
     TapeJournal *journal;
     double *frame, *q, *step[2], *euler[2], *link[2], *choice[2], *evaluated, *rate, *drate;
+    int results; /* room in rate and drate */
 } Linear;
 
 /* linearize.c: `engine` is the engine tape. */

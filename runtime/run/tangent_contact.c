@@ -2,7 +2,12 @@
  * Contacts that are located within steps, in a run with derivatives. The runtime core finds them (gic_runtime.c), by
  * steps of both without derivatives; which pieces it has made in the end is seen from the times at which it evaluates
  * rates. Then the step is made again in these pieces, whose ends are clocks where the number of a contact is 0.
- * Pieces that end elsewhere, as where a contact comes near, or parts of loads that bend, stay where they are. */
+ * Pieces that end elsewhere, as where a contact comes near, or parts of loads that bend, stay where they are.
+ *
+ * A contact that begins or ends just at the end of a step, as numbers that people write let it, needs no piece, but
+ * there an evaluation of the rates may be on either side of it, and its derivatives lack a stiffness, or have one too
+ * many: a sixth of the change in such a step, with a stiff contact more than all else. So the part of the step next to
+ * it is made by itself, a millionth of the step. */
 #include "engine/engine.h"
 #include "gic_runtime.h"
 #include "run/tangent_private.h"
@@ -16,7 +21,11 @@
 typedef struct Piece {
     double start, end;
     int parts;
+    bool stays; /* its end is that of no contact */
 } Piece;
+
+static const double next_to = 1e-6;       /* of a step: what is made by itself next to a contact at its end */
+static const double least_change = 1e-12; /* of a contact's number within a step, m or more: below it is noise */
 
 typedef struct Watch {
     Saved *before, *after, *here;
@@ -38,7 +47,7 @@ static int piece_of(const Watch *watch, double end, Piece *piece)
             break;
         at = t[0];
     }
-    *piece = (Piece){at, end, parts};
+    *piece = (Piece){.start = at, .end = end, .parts = parts};
     return parts;
 }
 
@@ -182,6 +191,54 @@ static int find_chain(const Watch *watch, double start, double end, Piece *chain
     return fabs(at - start) <= same ? count : 0;
 }
 
+/* Numbers of the contacts of the vehicle in an instance of both. */
+static int press_in(const TangentRun *run, const Both *both, double *press)
+{
+    const char *at = (const char *)both;
+    const double time = gic_time(both);
+    double *own = tape_array(run->self, run->code->state_offset);
+    tangent_inputs_of(run, time);
+    memcpy(tape_array(run->self, run->code->input_offset), at + run->descriptor.input_offset,
+           (size_t)run->inputs * sizeof *own);
+    tangent_take(run, (const double *)(const void *)(at + run->descriptor.state_offset), 0, own);
+    return run->code->contacts->press(run->self, time, own, press);
+}
+
+/* Whether a contact begins or ends at the first and at the last moment of the step: at[2]. */
+static int find_touching(const TangentRun *run, bool *at)
+{
+    double press[2][GIC_CONTACTS];
+    int status = press_in(run, run->happened.watch->before->both, press[0]);
+    if (status == GIC_OK)
+        status = press_in(run, run->both, press[1]);
+    for (int i = 0; i < run->code->contact_count && status == GIC_OK; ++i) {
+        const double change = fabs(press[1][i] - press[0][i]);
+        for (int end = 0; end < 2 && change > least_change; ++end)
+            at[end] = at[end] || fabs(press[end][i]) <= next_to * change;
+    }
+    return status;
+}
+
+/* Make of the first and last piece two where a contact is at their outer ends. Returns the number of pieces, two more
+ * at most. */
+static int part_ends(Piece *chain, int count, double step, const bool *at)
+{
+    const double part = next_to * step;
+    if (at[1] && chain[count - 1].end - chain[count - 1].start > 2 * part) {
+        chain[count] = (Piece){chain[count - 1].end - part, chain[count - 1].end, 1, true};
+        chain[count - 1].end -= part;
+        chain[count - 1].stays = true;
+        ++count;
+    }
+    if (at[0] && chain[0].end - chain[0].start > 2 * part) {
+        memmove(chain + 1, chain, (size_t)count * sizeof *chain);
+        chain[0] = (Piece){chain[0].start, chain[0].start + part, 1, true};
+        chain[1].start += part;
+        ++count;
+    }
+    return count;
+}
+
 int tangent_contacts_after(TangentRun *run, bool *again)
 {
     Watch *watch = run->happened.watch;
@@ -190,13 +247,21 @@ int tangent_contacts_after(TangentRun *run, bool *again)
         return GIC_OK;
     run->plain = watch->kept_plain;
     watch->looking = false;
-    if (!watch->pieces || run->plain)
+    if (run->plain || (!watch->pieces && run->rest.going))
         return GIC_OK;
     const double start = gic_time(watch->before->both), end = gic_time(run->both);
-    Piece chain[watch->pieces];
+    bool touching[2] = {false, false};
+    int late = -1, status = find_touching(run, touching);
+    if (status != GIC_OK || (!watch->pieces && !touching[0] && !touching[1]))
+        return status;
+    Piece chain[watch->pieces + 3];
     TrailStep next;
-    const int count = find_chain(watch, start, end, chain);
-    int late = -1, status = count ? GIC_OK : GIC_ERROR_EVENTS;
+    chain[0] = (Piece){.start = start, .end = end, .parts = tangent_parts(run, tangent_dual(run))};
+    int count = watch->pieces ? find_chain(watch, start, end, chain) : 1;
+    if (count)
+        count = part_ends(chain, count, end - start, touching);
+    else
+        status = GIC_ERROR_EVENTS;
     if (run->rest.going) {
         run->happened.failed = "a contact that begins or ends in the step in which a condition becomes true";
         return GIC_ERROR_EVENTS;
@@ -207,7 +272,9 @@ int tangent_contacts_after(TangentRun *run, bool *again)
     for (int i = 0; i < count && status == GIC_OK; ++i) {
         double to = end;
         int guard = -1, later;
-        if (i + 1 < count) {
+        if (i + 1 < count)
+            to = chain[i].end;
+        if (i + 1 < count && !chain[i].stays) {
             chain[i].start = gic_time(run->both);
             status = refine(run, &chain[i], end - start, &next, &to, &guard);
         }

@@ -7,6 +7,7 @@
  * What jumps, as the gear, makes a condition true at a time that does not change. */
 #include "engine/engine.h"
 #include "gic_runtime.h"
+#include "run/condition_output.h"
 #include "run/tangent_private.h"
 #include "scene/action.h"
 #include "scene/profile.h"
@@ -128,6 +129,22 @@ static int make_piece(TangentRun *run, double time, int parts, int late, int lat
     return status;
 }
 
+int tangent_guard_output(const TangentRun *run, int condition)
+{
+    return run->outputs + run->happened.conditions + condition;
+}
+
+/* Above 0 if a condition is true at the present state. */
+static int truth(const TangentRun *run, int c, double *value)
+{
+    tangent_inputs_of(run, gic_time(run->both));
+    tangent_take(run, tangent_array(run, run->descriptor.state_offset), 0,
+                 tape_array(run->self, run->code->state_offset));
+    const int status = run->code->outputs(run->self);
+    *value = tape_array(run->self, run->code->output_offset)[run->outputs + c];
+    return status;
+}
+
 int tangent_guard(const TangentRun *run, int guard, double *value)
 {
     const gic_model *code = run->code;
@@ -137,7 +154,8 @@ int tangent_guard(const TangentRun *run, int guard, double *value)
     tangent_inputs_of(run, time);
     tangent_take(run, tangent_array(run, run->descriptor.state_offset), 0, state);
     const int status = contact < 0 ? code->outputs(run->self) : code->contacts->press(run->self, time, state, press);
-    *value = contact < 0 ? tape_array(run->self, code->output_offset)[run->outputs + guard] : press[contact];
+    *value =
+        contact < 0 ? tape_array(run->self, code->output_offset)[tangent_guard_output(run, guard)] : press[contact];
     return status;
 }
 
@@ -160,9 +178,9 @@ int tangent_guard_slope(const TangentRun *run, int guard, const double *along, d
         direction->u[i] += late * rate[i];
     const int contact = guard - run->happened.conditions;
     const int status = contact < 0
-                           ? linear_slope(run->linear, run->self, LINEAR_RATE, run->outputs + run->happened.conditions)
+                           ? linear_slope(run->linear, run->self, LINEAR_RATE, tangent_guard_output(run, guard) + 1)
                            : linear_slope(run->linear, run->self, LINEAR_PRESS, 0);
-    *slope = run->linear->drate[run->states + (contact < 0 ? run->outputs + guard : contact)];
+    *slope = run->linear->drate[run->states + (contact < 0 ? tangent_guard_output(run, guard) : contact)];
     return status;
 }
 
@@ -280,7 +298,7 @@ static bool condition_moves(const TangentRun *run, int c, int *status)
     if (*status != GIC_OK)
         return false;
     memset(linear->drate, 0, (size_t)(run->states + code->output_count) * sizeof *linear->drate);
-    linear->drate[run->states + run->outputs + c] = 1;
+    linear->drate[run->states + tangent_guard_output(run, c)] = 1;
     *status = linear_pull(linear, run->self, LINEAR_RATE, code->output_count);
     bool moves = false;
     for (int i = 0; i < run->states; ++i)
@@ -297,7 +315,22 @@ typedef struct Found {
     bool moves;  /* the time follows from variables */
 } Found;
 
-/* Of a condition whose value is `there` > 0 at the end of the step, `end`. */
+/* True if controllers sample, or their values take effect, at this time. */
+static bool is_instant(const TangentRun *run, double time)
+{
+    bool is = false;
+    for (int c = 0; c < run->model->controllers; ++c) {
+        const Controller *controller = &run->model->controller[c];
+        for (int i = -1; i < controller->rules; ++i) {
+            const double periods =
+                (time - controller->offset - (i < 0 ? 0 : controller->rule[i].late)) / controller->period;
+            is = is || fabs(periods - round(periods)) < 1e-9 * (1 + fabs(periods));
+        }
+    }
+    return is;
+}
+
+/* Of a condition whose guard is `there` at the end of the step, `end`, where the condition is true. */
 static int locate(TangentRun *run, const Saved *start, double end, int c, double there, Found *found)
 {
     const double first = gic_time(start->both), width = end - first;
@@ -347,6 +380,11 @@ static int locate(TangentRun *run, const Saved *start, double end, int c, double
     found->moves = slope > 0 && jump <= slope * most && condition_moves(run, c, &status);
     if (found->moves && !actions_of(run)->action[c].ends) /* what comes after has to have a piece of the step */
         found->time = fmin(found->time, end - least);
+    if (status == GIC_OK && !found->moves && jump > slope * most && jump > 0 && high < end && !is_instant(run, high) &&
+        condition_jumps(run->model, c)) {
+        run->happened.failed = "a condition whose `if` jumps, and not between comparisons,";
+        return GIC_ERROR_RESULT;
+    }
     if (status == GIC_OK && slope <= 0 && jump <= 1e-9 * fmax(fabs(there), 1e-9) && high < end) {
         run->happened.failed = "a condition that becomes true without crossing 0";
         return GIC_ERROR_RESULT;
@@ -363,7 +401,7 @@ static int note_held(const TangentRun *run)
     for (int i = 0; i < actions->count && status == GIC_OK; ++i) {
         double value = 0;
         if (!actions->action[i].done)
-            status = tangent_guard(run, i, &value);
+            status = truth(run, i, &value);
         actions->action[i].held = value > 0;
     }
     return status;
@@ -405,8 +443,11 @@ static int first_action(TangentRun *run, Saved *start, Saved *end, Found *first,
         if (actions->action[i].done || actions->action[i].held)
             continue;
         tangent_restore(run, end, &next);
-        status = tangent_guard(run, i, &value);
+        status = truth(run, i, &value);
         if (status != GIC_OK || !(value > 0))
+            continue;
+        status = tangent_guard(run, i, &value);
+        if (status != GIC_OK)
             continue;
         status = locate(run, start, gic_time(end->both), i, value, &found);
         if (status == GIC_OK && (*which < 0 || found.time < first->time)) {
@@ -507,7 +548,7 @@ static int happen_all(TangentRun *run, int which, int clock, TrailStep *next)
         for (int i = 0; i < actions->count && status == GIC_OK && which < 0; ++i) {
             double value = 0;
             if (!actions->action[i].done && !actions->action[i].held)
-                status = tangent_guard(run, i, &value);
+                status = truth(run, i, &value);
             if (status == GIC_OK && value > 0)
                 which = i;
         }

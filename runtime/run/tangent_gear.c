@@ -246,9 +246,11 @@ static int finish(TangentRun *run, const Ends *ends, int parts)
     run->rest =
         (Rest){.going = true, .start = gic_time(run->copy), .end = ends->start + ends->step, .late = run->shift};
     gic_restart(head, gic_time(run->copy));
+    head->locate = 0; /* the step has been looked at */
     for (int k = 0; k < parts && status == GIC_OK; ++k)
         status = gic_step(&run->descriptor, run->both, (run->rest.end - run->rest.start) / parts, GIC_RK4);
     run->rest.going = false;
+    head->locate = kept.locate;
     head->start_time = kept.start_time;
     head->steps = kept.steps;
     head->step = kept.step;

@@ -45,7 +45,7 @@ typedef struct Happening {
 
 /* What conditions and contacts do to a run (tangent_event.c). */
 typedef struct Happened {
-    int conditions; /* the first outputs after those that are looked at */
+    int conditions; /* the first outputs after those that are looked at, and as many again: their guards */
     bool ended;     /* the run, by a condition */
     int end;        /* clock of its end; -1: its time stays */
     double **clock; /* [clocks][carried] times that come later, by each variable */
@@ -143,6 +143,9 @@ int tangent_piece(TangentRun *run, double time, int parts, int late, int guard, 
 /* The value of a guard at the present state, after which guard_slope() is that along a change of the state and of the
  * time; k: and of variable k, -1: of none. Both return a status. */
 int tangent_guard(const TangentRun *run, int guard, double *value);
+/* The output of the model that is the guard of a condition; that of its value is as many before it as there are
+ * conditions. */
+int tangent_guard_output(const TangentRun *run, int condition);
 int tangent_guard_slope(const TangentRun *run, int guard, const double *along, double late, int k, double *slope);
 
 /* tangent_contact.c: `descriptor` of both gets the contacts of the vehicle, if the scene locates them; *at: room in the

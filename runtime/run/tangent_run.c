@@ -555,7 +555,7 @@ static TangentRun *open(Pool *pool, const Model *model, const Scene *scene, Solv
                         .code = engine->code,
                         .self = (Instance *)(void *)instance_new(pool, engine),
                         .copy = (Instance *)(void *)instance_new(pool, engine),
-                        .outputs = own_outputs(model) - condition_has(model),
+                        .outputs = own_outputs(model) - 2 * condition_has(model),
                         .states = engine->code->slow_count + engine->code->fast_count,
                         .inputs = engine->code->input_count};
     double f[run->linear->count + 1];

@@ -21,6 +21,11 @@ check 'conditions are no part of what is identified' ends 'a run in which condit
 sed 's/^duration: .*/duration: 0.5\nwhen: [{if: "time > 0.2", target: 5}]/; s/^equilibrium.*//' "$models/scenes/lane_change.scene" >"$work/target.scene"
 run --gradient chassis.x "$models/hmmwv_vehicle.veh" "$work/target.scene" initial/x.rate -o "$work/no.csv"
 check 'a target that begins' ends 'a `target` of the driver that begins as a condition becomes true at t = 0.2'
+for until in 'flag > 0' '2 * if(x.value > hi, 1, -1)' 'x.value > if(x.rate > 1.5, 0, 9)'; do
+    printf 'gicscene: 1\nduration: 3\nstep: 0.01\nparameters: {hi: 1.496}\ninitial: {rates: {x: 1}}\nuntil: "%s"\n' "$until" >"$work/jump.scene"
+    run --gradient time "$work/cart.veh" "$work/jump.scene" -o "$work/no.csv"
+    check "a condition that jumps: $until" ends 'a condition whose `if` jumps, and not between comparisons, at t = '
+done
 
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]

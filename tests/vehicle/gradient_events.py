@@ -272,4 +272,137 @@ for method in ("ab3\nratio: 4", "rk4"):
          float(last[-1].split(",")[0]), 1e-6)
 check("it ends early", float(last[-1].split(",")[0]) < 2.9)
 
+
+# ---- conditions whose values jump: comparisons with =, `not`, `and`, `or`, `if` -----------------------------------------------------
+# a cart from x = 0 at 1 m/s with 1 m/s^2 is at hi at T = sqrt(1 + 2 hi) - 1: 1 s for 1.5 m, at the end of a step as well as within one
+
+cart = f"{work}/cart.veh"
+Path(cart).write_text("""gicgen: 1
+model: cart
+base: ground
+parameters:
+  hi: {value: 1.5, unit: m, tunable: true}
+  a: {value: 1, unit: N, tunable: true}
+  wall: {value: 9, unit: m, tunable: true}
+bodies:
+  m: {mass: 1, com: [0, 0, 0], inertia: [1, 1, 1]}
+joints:
+  p: {type: prismatic, bodies: [ground, m], axis: [1, 0, 0]}
+coordinates:
+  x: {type: translation, bodies: [ground, m], axis: [1, 0, 0], range: [-10, 10]}
+forces:
+  push: {type: force, coordinate: x, value: a}
+  wall: {type: stop, coordinate: x, high: wall, stiffness: 1e4}
+outputs:
+  x: {type: coordinate, coordinate: x}
+  flag: {type: signal, signal: flag}
+signals:
+  flag: {value: "if(x > hi, 1, -1)"}
+""")
+for hi in (1.5, 1.496):
+    root = math.sqrt(1 + 2 * hi)
+    T = root - 1
+    by = {"initial/x": -1 / root, "initial/x.rate": -T / root, "parameter/hi": 1 / root, "parameter/a": -T * T / 2 / root, "parameter/wall": 0}
+    for until in ("x.value > hi", "x.value >= hi", "hi <= x.value", "not (x.value < hi)", "not (x.value <= hi)", "if(x.value > hi, x.rate, -1)",
+                  "if(x.value > hi, 1, 0)", "if(x.value < hi, -1, 2)", "-if(x.value < hi, 1, -1)", "x.value >= hi and x.rate >= 0", "x.value >= hi or time > 2.5",
+                  "not (x.value < hi or x.rate <= 0)", "x.value > hi and not (x.value < 0)", "if(not (x.value < hi), x.value, -x.value)"):
+        path = f"{work}/cart.scene"
+        Path(path).write_text(f"gicscene: 1\nduration: 3\nstep: 0.01\nintegrator: rk4\ninitial: {{rates: {{x: 1}}}}\nparameters: {{hi: {hi}}}\nuntil: \"{until}\"\n")
+        for chosen in ([], ["parameter/hi"], ["initial/x.rate"]):
+            value, d = gradient("time", cart, path, *chosen)
+            near(f"until {until}, {hi}: time", value, T, 1e-11)
+            for name in d:
+                near(f"until {until}, {hi}: time by {name}", d[name], by[name], 1e-10)
+# whose time stays: the same for each variable
+for until in ("if(time > 1, 1, -1)", "2 * if(time >= 1, 1, -1)", "x.value > if(time > 1, 0, 9)"):
+    Path(path).write_text(f"gicscene: 1\nduration: 3\nstep: 0.01\ninitial: {{rates: {{x: 1}}}}\nuntil: \"{until}\"\n")
+    value, d = gradient("time", cart, path)
+    near(f"until {until}: time", value, 1, 1e-6)
+    check(f"until {until}: it stays", len(d) > 2 and all(number == 0 for number in d.values()))
+# true from the start, at its border: never becomes true
+Path(path).write_text("gicscene: 1\nduration: 0.5\nstep: 0.01\ninitial: {rates: {x: 1}}\nuntil: \"x.value >= 0\"\n")
+value, d = gradient("time", cart, path)
+check("a condition that holds from the start", value == 0.5 and all(number == 0 for number in d.values()))
+
+# ---- contacts at the ends of steps ---------------------------------------------------------------------------------------------
+# at 1 m/s to a wall of 1e4 N/m and back: x(1) = 2 wall - 1 + pi / 100, whenever it is met. Tolerances: what RK4 and AB3 make of 100 rad/s, 0.1 and 0.5 a step
+
+path = f"{work}/wall.scene"
+for wall, step, method, far in ((0.5, 0.001, "rk4", 2e-6), (0.25, 0.001, "rk4", 2e-6), (0.5003, 0.001, "rk4", 2e-6), (0.5, 0.001, "ab3", 2e-3), (0.4, 0.005, "rk4", 1e-3),
+                                (0.5, 0.005, "rk4", 1e-3), (0.4, 0.002, "rk4", 3e-4), (0.512, 0.002, "rk4", 3e-4)):
+    for locate in ("true", "loads"):
+        Path(path).write_text(f"gicscene: 1\nduration: 1\nstep: {step}\nintegrator: {method}\nlocate: {locate}\ninitial: {{rates: {{x: 1}}}}\n"
+                              f"parameters: {{a: 0, wall: {wall}}}\n")
+        for chosen in ([], ["parameter/wall"]):
+            d = gradient("x.value", cart, path, *chosen)[1]
+            near(f"a wall at {wall} m, {method}, {step}, locate: {locate}, {len(chosen)}: by its place", d["parameter/wall"], 2, far)
+
+# ---- a stop on the piston of a slider crank, whose pose is found by iteration: forwards and backwards ----------------------------------
+
+crank = f"{work}/crank.veh"
+Path(crank).write_text("""gicgen: 1
+model: crank
+base: ground
+parameters:
+  lo: {value: 0.55, unit: m, tunable: true}
+  T: {value: 0, unit: N m, tunable: true}
+bodies:
+  crank: {mass: 1, com: [0, 0, 0.05], inertia: [0.01, 0.01, 0.01]}
+  rod: {mass: 1, com: [0.1414213562373095, 0, 0.05], inertia: [0.01, 0.01, 0.01]}
+  piston: {mass: 1, com: [0.28284271247461903, 0, 0], inertia: [0.01, 0.01, 0.01]}
+joints:
+  main: {type: revolute, bodies: [ground, crank], point: [0, 0, 0], axis: [0, 1, 0]}
+  pin: {type: revolute, bodies: [crank, rod], point: [0, 0, 0.1], axis: [0, 1, 0]}
+  wrist: {type: point_on_line, bodies: [rod, piston], point: [0.28284271247461903, 0, 0], axis: [0, 1, 0]}
+  bore: {type: prismatic, bodies: [ground, piston], axis: [1, 0, 0]}
+coordinates:
+  phi: {type: angle, bodies: [ground, crank], axis: [0, 1, 0], range: [-100, 100]}
+forces:
+  stop: {type: stop, bodies: [ground, piston], points: [[0.8, 0, 0], [0.28284271247461903, 0, 0]], low: lo, stiffness: 1e4, damping: 10, fade: 0.01}
+  turn: {type: force, coordinate: phi, value: T}
+outputs:
+  phi: {type: coordinate, coordinate: phi}
+""")
+path = f"{work}/crank.scene"
+for method in ("rk4", "ab3"):
+    for k in range(12):
+        Path(path).write_text(f"gicscene: 1\nduration: 1\nstep: 0.005\nintegrator: {method}\nlocate: true\ninitial: {{rates: {{phi: 5}}}}\n"
+                              f"parameters: {{lo: {0.55 + 0.0005 * k!r}}}\n")
+        back = gradient("phi.value", crank, path)[1]
+        for name in ("parameter/lo", "initial/phi.rate"):
+            near(f"a crank's stop, {method}, {k}: {name} both ways", back[name], gradient("phi.value", crank, path, name)[1][name], 1e-9 * abs(back[name]))
+
+# ---- a wheel that is located beside a condition that is not met, and beside changes of gear --------------------------------------------
+
+quarter = f"{work}/quarter.veh"
+Path(quarter).write_text("""gicgen: 1
+model: quarter
+base: ground
+parameters:
+  m: {value: 300, unit: kg, tunable: true}
+bodies:
+  body: {mass: m, com: [0, 0, 0.6], inertia: [1, 1, 1]}
+  hub: {mass: 40, com: [0, 0, 0.3], inertia: [1, 1, 1]}
+joints:
+  a: {type: prismatic, bodies: [ground, body], axis: [0, 0, 1]}
+  b: {type: prismatic, bodies: [body, hub], axis: [0, 0, 1]}
+coordinates:
+  z: {type: translation, bodies: [ground, body], axis: [0, 0, 1], range: [-5, 5]}
+  w: {type: translation, bodies: [body, hub], axis: [0, 0, 1], range: [-0.3, 0.3]}
+forces:
+  spring: {type: spring_damper, coordinate: w, stiffness: 20000, damping: 0}
+  stop: {type: stop, coordinate: w, high: 0.1, low: -0.1, stiffness: 1e5, damping: 100}
+wheels:
+  t: {body: hub, center: [0, 0, 0.3], radius: 0.3, stiffness: 200000}
+outputs:
+  z: {type: coordinate, coordinate: z}
+""")
+path = f"{work}/quarter.scene"
+Path(path).write_text("gicscene: 1\nduration: 0.5\nstep: 0.002\nlocate: true\ninitial: {rates: {z: 1}}\nuntil: \"z.value > 4\"\n")
+check("a condition that is not met: the end stays", all(number == 0 for number in gradient("time", quarter, path)[1].values()))
+both_ways("a condition that is not met", "z.value", quarter, path)
+Path(path).write_text(Path(f"{models}/scenes/full_run.scene").read_text().replace("duration: 30", "duration: 4") + "\nlocate: true\n")
+check("it is short", "duration: 4" in Path(path).read_text())
+both_ways("gears and contacts", "chassis.x", f"{models}/hmmwv_vehicle.veh", path, ["initial/x.rate", "initial/yaw", "input/accelerator[1]", "input/rack[1]"])
+
 finish()
