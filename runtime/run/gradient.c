@@ -5,6 +5,7 @@
 #include "gic_runtime.h"
 #include "host/host.h"
 #include "run/adjoint_run.h"
+#include "model/limits.h"
 #include "run/number_place.h"
 
 #include <math.h>
@@ -155,6 +156,10 @@ static const Scene *with_values(Pool *pool, const Model *model, const Scene *sce
                 number_places_check(model, copy, &variable[k], 1, "--gradient");
                 *number_place(model, copy, &variable[k]) = variable[k].value = value[i];
             }
+    BrokenLimit broken;
+    if (limit_broken(model, copy->parameter, &broken))
+        diag_fail_call(program_place(), "choose other values of the parameters",
+                       "with these parameters the model is impossible: %s", broken.text);
     return copy;
 }
 

@@ -10,6 +10,7 @@
 #include "host/gsl_errors.h"
 #include "host/host.h"
 #include "run/fit_page.h"
+#include "model/limits.h"
 #include "run/number_place.h"
 #include "run/tangent_run.h"
 
@@ -147,6 +148,9 @@ static int run_with(Fit *fit, const gsl_vector *x)
 {
     for (int k = 0; k < fit->variables; ++k)
         *number_place(fit->model, fit->scene, &fit->variable[k]) = gsl_vector_get(x, (size_t)k) * fit->unit[k];
+    BrokenLimit broken;
+    if (limit_broken(fit->model, fit->scene->parameter, &broken))
+        return fit->status = GIC_ERROR_GEOMETRY;
     return fit->status = run_through(fit);
 }
 
@@ -405,6 +409,12 @@ static End fit_all(Fit *fit, gsl_vector *x, gsl_matrix *covariance, size_t *unto
 /* End with a message unless it was found. */
 static void check_end(const Fit *fit, End end, size_t untold)
 {
+    BrokenLimit broken;
+    if (end != FOUND && limit_broken(fit->model, fit->scene->parameter, &broken))
+        diag_fail(
+            (Place){fit->table->source, 1, 1},
+            "leave it out, start elsewhere by values in the scene, or give the model what these measurements show",
+            "these measurements lead out of what the model allows: %s", broken.text);
     if (end == NO_RUN)
         tangent_fail(fit->run, fit->status);
     if (end == UNTOLD)

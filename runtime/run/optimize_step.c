@@ -8,6 +8,7 @@
  * variables that stand at a bound and would leave it held, and cut off at the bounds. */
 #include "gic_runtime.h"
 #include "run/optimize.h"
+#include "model/limits.h"
 #include "run/number_place.h"
 
 #include <math.h>
@@ -30,6 +31,9 @@ int optimize_run(Search *s, const double *x, double *rest, double *jacobian)
     for (int k = 0; k < s->variables; ++k)
         *number_place(s->model, s->scene, &s->variable[k]) = x[k];
     ++s->runs;
+    BrokenLimit broken;
+    if (limit_broken(s->model, s->scene->parameter, &broken))
+        return s->status = GIC_ERROR_GEOMETRY;
     int status = tangent_begin(s->run, s->scene);
     for (int t = 0; t < s->times && status == GIC_OK; ++t) {
         for (int64_t i = 0; t > 0 && i < s->scene->per_output && status == GIC_OK; ++i)

@@ -16,6 +16,7 @@
 #include "run/run.h"
 #include "run/sampling.h"
 #include "run/scene_events.h"
+#include "run/range_watch.h"
 #include "run/stability_watch.h"
 #include "run/variable_step.h"
 #include "scene/action.h"
@@ -53,7 +54,8 @@ typedef struct Run {
     Animation *animation; /* NULL: none */
     StepWatch *watch;     /* NULL: none */
     BounceWatch *bounces; /* NULL: none */
-    SceneEvents *events;  /* NULL: the scene has no conditions */
+    RangeWatch *ranges;
+    SceneEvents *events; /* NULL: the scene has no conditions */
     LastGood *good;
     Outcome outcome;
     bool ended;             /* by `until` */
@@ -257,6 +259,8 @@ static int compute_outputs(Run *run)
  * available. */
 static void look_at_vehicle(Run *run, const gic_head *at)
 {
+    if (!run->engine->leave)
+        range_watch_look(run->ranges, run->model, at);
     if (run->model->free_base && run->model->wheel_count && !run->engine->leave)
         outcome_look(&run->outcome, run->model, run->scene->road, gic_time(at),
                      instance_array((gic_head *)at, run->model->state_offset));
@@ -369,6 +373,7 @@ static void summary_of_events(Text *out, const Run *run)
         text_print(out, "  %-20s leans by more than 60 degrees at t = %.6g s\n", "vehicle tips over", o->tipped);
     if (!isnan(o->left))
         text_print(out, "  %-20s beyond the road's data from t = %.6g s on\n", "vehicle leaves road", o->left);
+    range_watch_print(run->ranges, out);
     if (!isnan(o->rest) && o->moved)
         text_print(out, "  %-20s from t = %.6g s on\n", "vehicle at rest", o->rest);
 }
@@ -754,6 +759,7 @@ void simulate(Pool *pool, const Engine *engine, const Model *mechanism, const Sc
                   instance_status(pool, model, run.copy, status));
     run.good = last_good_new(pool, engine);
     run.bounces = scene->page ? NULL : bounce_watch_new(pool, theory, whole, engine);
+    run.ranges = range_watch_new(pool, mechanism);
     run.outcome = outcome_new();
     run.events = scene_events_new(pool, engine, scene, run.self, &status);
     if (status != GIC_OK)

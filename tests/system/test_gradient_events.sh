@@ -26,6 +26,33 @@ for until in 'flag > 0' '2 * if(x.value > hi, 1, -1)' 'x.value > if(x.rate > 1.5
     run --gradient time "$work/cart.veh" "$work/jump.scene" -o "$work/no.csv"
     check "a condition that jumps: $until" ends 'a condition whose `if` jumps, and not between comparisons, at t = '
 done
+# what the model's file would refuse is refused of numbers that are looked for, too: a pendulum that swings up needs negative damping
+cat >"$work/pend.veh" <<'END'
+gicgen: 1
+model: pend
+base: ground
+parameters:
+  c: {value: 0.1, unit: N m s/rad, tunable: true}
+bodies:
+  bob: {mass: 1, com: [0, 0, -1], inertia: [0.01, 0.01, 0.01]}
+joints:
+  pin: {type: revolute, bodies: [ground, bob], point: [0, 0, 0], axis: [0, 1, 0]}
+coordinates:
+  phi: {type: angle, bodies: [ground, bob], axis: [0, 1, 0], range: [-10, 10]}
+forces:
+  d: {type: spring_damper, coordinate: phi, stiffness: 0, damping: c}
+outputs:
+  phi: {type: coordinate, coordinate: phi}
+END
+printf 'gicscene: 1\nduration: 2\nstep: 0.01\ninitial: {coordinates: {phi: 0.5}}\n' >"$work/pend.scene"
+run --optimize 'abs(phi.value) - 2' "$work/pend.veh" "$work/pend.scene" parameter/c=-5:5 -o "$work/found.csv"
+allowed() { awk -F, '$1 == "parameter/c" { found = 1; exit !($3 >= 0) } END { exit !found }' "$work/found.csv"; }
+check 'an optimum that the model refuses is none' allowed
+run --gradient phi.value "$work/pend.veh" "$work/pend.scene" parameter/c=-1 -o "$work/no.csv"
+check 'nor has it a gradient' ends 'with these parameters the model is impossible: damping'
+awk 'BEGIN { print "time [s],phi.value [rad]"; for (t = 0; t < 2; t += 0.1) print t "," 0.5 * exp(0.5 * t) * cos(3.13 * t) }' >"$work/up.csv"
+run --identify "$work/up.csv" "$work/pend.veh" "$work/pend.scene" parameter/c -o "$work/no.csv"
+check 'nor is it identified' ends 'these measurements lead out of what the model allows: damping'
 
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]
