@@ -51,7 +51,7 @@
  */
 #include "andrews.h"
 
-#if ANDREWS_H != 0xcf614b8f
+#if ANDREWS_H != 0xed4a5cc9
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -4002,6 +4002,7 @@ const gic_model andrews_model = {
     andrews_any_march,
     0,
     0,
+    NULL,
     NULL,
     NULL,
     NULL,

@@ -80,7 +80,7 @@
  */
 #include "five_link.h"
 
-#if FIVE_LINK_H != 0x8a64b7f7
+#if FIVE_LINK_H != 0xb1dbafbb
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -8041,6 +8041,7 @@ const gic_model five_link_model = {
     five_link_any_march,
     0,
     0,
+    NULL,
     NULL,
     NULL,
     NULL,

@@ -86,7 +86,7 @@
  */
 #include "hmmwv.h"
 
-#if HMMWV_H != 0x4eb9af8b
+#if HMMWV_H != 0x3bd1b89f
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -6861,6 +6861,7 @@ const gic_model hmmwv_model = {
     hmmwv_any_march,
     0,
     0,
+    NULL,
     NULL,
     NULL,
     NULL,

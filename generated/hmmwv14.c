@@ -88,7 +88,7 @@
  */
 #include "hmmwv14.h"
 
-#if HMMWV14_H != 0xd6c795a5
+#if HMMWV14_H != 0x30b531b7
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -10165,6 +10165,7 @@ const gic_model hmmwv14_model = {
     hmmwv14_any_march,
     0,
     0,
+    NULL,
     NULL,
     NULL,
     NULL,

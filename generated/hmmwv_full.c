@@ -86,7 +86,7 @@
  */
 #include "hmmwv_full.h"
 
-#if HMMWV_FULL_H != 0xe614db1d
+#if HMMWV_FULL_H != 0x37b3b5d1
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -7991,6 +7991,7 @@ const gic_model hmmwv_full_model = {
     hmmwv_full_any_march,
     0,
     0,
+    NULL,
     NULL,
     NULL,
     NULL,

@@ -29,7 +29,7 @@
  */
 #include "pendulum.h"
 
-#if PENDULUM_H != 0x38bcfecf
+#if PENDULUM_H != 0x943bb707
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -1231,6 +1231,7 @@ const gic_model pendulum_model = {
     pendulum_any_march,
     0,
     0,
+    NULL,
     NULL,
     NULL,
     NULL,

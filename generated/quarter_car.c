@@ -56,7 +56,7 @@
  */
 #include "quarter_car.h"
 
-#if QUARTER_CAR_H != 0x20787c25
+#if QUARTER_CAR_H != 0xcc71fd99
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -2582,6 +2582,7 @@ const gic_model quarter_car_model = {
     quarter_car_any_march,
     0,
     0,
+    NULL,
     NULL,
     NULL,
     NULL,

@@ -75,7 +75,7 @@
  */
 #include "solid_axle.h"
 
-#if SOLID_AXLE_H != 0xae39c8b3
+#if SOLID_AXLE_H != 0xad8098d1
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -7603,6 +7603,7 @@ const gic_model solid_axle_model = {
     solid_axle_any_march,
     0,
     0,
+    NULL,
     NULL,
     NULL,
     NULL,

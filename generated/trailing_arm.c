@@ -78,7 +78,7 @@
  */
 #include "trailing_arm.h"
 
-#if TRAILING_ARM_H != 0x9aca8dd7
+#if TRAILING_ARM_H != 0xf6564f3f
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 
@@ -6961,6 +6961,7 @@ const gic_model trailing_arm_model = {
     trailing_arm_any_march,
     0,
     0,
+    NULL,
     NULL,
     NULL,
     NULL,

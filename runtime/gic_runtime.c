@@ -1545,19 +1545,46 @@ static int link_at(const Dual *dual, int32_t k, const gic_real *slow, gic_real *
     return gic_finite(link, dual->model->link_count) ? GIC_OK : GIC_ERROR_RESULT;
 }
 
-/* The links at the beginning of fast step k: the cubic through four rows. Differences are weighted, so that equal rows
- * give the same number to the last bit. */
-static void interpolate(const Dual *dual, int32_t k, gic_real *link)
+/* The links at the beginning of fast step k, the cubic through four rows: weights of what the next row, the one before
+ * and the older one differ from the present one. Differences are weighted, so that equal rows give the same number to
+ * the last bit. */
+static void weigh_rows(const Dual *dual, int32_t k, gic_real by[3])
+{
+    const gic_real s = (gic_real)k / (gic_real)dual->ratio, half = GIC_R(0.5) * s, sixth = s / GIC_R(6.0);
+    by[0] = sixth * (s + GIC_R(1.0)) * (s + GIC_R(2.0));
+    by[1] = half * (s - GIC_R(1.0)) * (s + GIC_R(2.0));
+    by[2] = sixth * (GIC_R(1.0) - s) * (s + GIC_R(1.0));
+}
+
+static void interpolate(const Dual *dual, const gic_real by[3], gic_real *link)
 {
     const int32_t count = dual->model->link_count;
     const gic_real *now = dual->link, *before = now + count, *older = before + count, *next = older + count;
-    const gic_real s = (gic_real)k / (gic_real)dual->ratio, half = GIC_R(0.5) * s, sixth = s / GIC_R(6.0);
-    const gic_real of_next = sixth * (s + GIC_R(1.0)) * (s + GIC_R(2.0));
-    const gic_real of_before = half * (s - GIC_R(1.0)) * (s + GIC_R(2.0));
-    const gic_real of_older = sixth * (GIC_R(1.0) - s) * (s + GIC_R(1.0));
     for (int32_t i = 0; i < count; ++i)
-        link[i] =
-            now[i] + of_next * (next[i] - now[i]) + of_before * (before[i] - now[i]) + of_older * (older[i] - now[i]);
+        link[i] = now[i] + by[0] * (next[i] - now[i]) + by[1] * (before[i] - now[i]) + by[2] * (older[i] - now[i]);
+}
+
+/* Fast step k, which makes rate[], the fast states' rates at its start, if k is not 0. */
+static int step_fast(const Dual *dual, int32_t k, gic_real *fast, gic_real *rate)
+{
+    const gic_model *model = dual->model;
+    const gic_real step = dual->step / (gic_real)dual->ratio;
+    int status = GIC_OK;
+    if (k > 0) {
+        const gic_real time = moment(dual, k);
+        gic_real by[3], *link = dual->link + 4 * model->link_count;
+        set_inputs(model, dual->self, time);
+        weigh_rows(dual, k, by);
+        ++((gic_head *)dual->self)->fast_count;
+        if (model->fast_step)
+            return model->fast_step(dual->self, time, by, step, dual->fast[0], dual->fast[1], rate, fast);
+        interpolate(dual, by, link);
+        status = model->fast(dual->self, time, link, fast, rate);
+    }
+    if (status != GIC_OK)
+        return status;
+    adams_bashforth(model->fast_count, step, fast, rate, dual->fast[0], dual->fast[1], fast);
+    return gic_bounded(fast, model->fast_count) ? GIC_OK : GIC_ERROR_UNSTABLE;
 }
 
 /* A step without history: RK4 of everything at fast steps. After the second one row 3 has the rate at its end. */
@@ -1643,7 +1670,6 @@ static int march_dual(Dual *dual)
     const gic_real *state = array_at(dual->self, model->state_offset);
     const gic_real *history = array_at(dual->self, model->history_offset);
     gic_real *rate = row(dual, 0), *next = row(dual, 1), *fast = next + slow;
-    gic_real *link = dual->link + 4 * model->link_count;
     int status = evaluate(model, dual->self, moment(dual, 0), state, rate);
     if (status != GIC_OK)
         return status;
@@ -1663,19 +1689,9 @@ static int march_dual(Dual *dual)
         return stay_on_course(dual, fast, rate + slow, row(dual, 3));
     for (int32_t k = 0; k < dual->ratio; ++k) {
         gic_real *now = k == 0 ? rate + slow : row(dual, 3 + k % 3);
-        if (k > 0) {
-            const gic_real time = moment(dual, k);
-            set_inputs(model, dual->self, time);
-            interpolate(dual, k, link);
-            ++((gic_head *)dual->self)->fast_count;
-            status = model->fast(dual->self, time, link, fast, now);
-            if (status != GIC_OK)
-                return status;
-        }
-        adams_bashforth(model->fast_count, dual->step / (gic_real)dual->ratio, fast, now, dual->fast[0], dual->fast[1],
-                        fast);
-        if (!gic_bounded(fast, model->fast_count))
-            return out_of_bounds(dual->self, fast, slow, n);
+        status = step_fast(dual, k, fast, now);
+        if (status != GIC_OK)
+            return status == GIC_ERROR_UNSTABLE ? out_of_bounds(dual->self, fast, slow, n) : status;
         dual->fast[1] = dual->fast[0];
         dual->fast[0] = now;
     }

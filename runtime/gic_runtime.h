@@ -26,7 +26,7 @@ extern "C" {
 #endif
 
 /* Increased when generated code and runtime of different versions no longer fit together. */
-#define GIC_ABI_VERSION 10
+#define GIC_ABI_VERSION 11
 
 /* The number type of everything: compile runtime and generated code with GIC_FLOAT for single precision. The
  * names of the runtime's functions differ between the two, so that mixing them fails at link time. Who defines GIC_NAME
@@ -308,6 +308,12 @@ typedef struct gic_model {
     int (*link)(void *self, gic_real time, const gic_real *slow, gic_real *link);
     /* rate[] (fast_count) of a fast state (fast_count) at links */
     int (*fast)(void *self, gic_real time, const gic_real *link, const gic_real *fast, gic_real *rate);
+    /* An AB3 step of `step` seconds of fast states that are bounded, from `time` in a step of dual rate; rate[] becomes
+     * the rate at its start, past and older are those of the two steps before. The links are the first of the rows at
+     * link_offset plus by[i] times what the fourth, second and third differ from it. On an error both may be anything;
+     * GIC_ERROR_UNSTABLE: fast[] is out of bounds. NULL: step functions use `fast`. */
+    int (*fast_step)(void *self, gic_real time, const gic_real by[3], gic_real step, const gic_real *past,
+                     const gic_real *older, gic_real *rate, gic_real *fast);
     /* set fast states so that all wheels roll at the present state: TIRES.md section 2 */
     int (*roll)(void *self);
     /* Update the discrete states for the present state and time (POWERTRAIN.md section 4): 1 if they changed; NULL: no
@@ -444,14 +450,20 @@ static inline gic_word gic_bits(gic_real x)
     return look.bits;
 }
 
-/* True if all numbers are below a power of two, given by its bits. Comparisons with infinity would be optimized away
- * under -ffast-math. Adding to the exponent carries into the sign bit if it is too large: no branch for each number. */
+/* GIC_BITS_OF_SIGN is set in it if the number is not below a power of two, given by its bits. Comparisons with infinity
+ * would be optimized away under -ffast-math. Adding to the exponent carries into the sign bit if it is too large. */
+static inline gic_word gic_excess(gic_real x, gic_word bound)
+{
+    return (gic_bits(x) & GIC_BITS_OF_EXPONENT) + (GIC_BITS_OF_SIGN - bound);
+}
+
+/* True if all numbers are below a power of two: no branch for each number. */
 static inline int gic_below(const gic_real *x, int32_t count, gic_word bound)
 {
     gic_word above = 0;
     int32_t i;
     for (i = 0; i < count; ++i)
-        above |= (gic_bits(x[i]) & GIC_BITS_OF_EXPONENT) + (GIC_BITS_OF_SIGN - bound);
+        above |= gic_excess(x[i], bound);
     return !(above & GIC_BITS_OF_SIGN);
 }
 

@@ -257,13 +257,24 @@ static void write_assume_caller(void *context, Text *out, int indent)
     write_assume(context, out, indent, ABOUT_CALLER);
 }
 
-static const Insertion dual_rate_point[] = {{"assume", write_assume_caller}, {"rolling", write_rolling}, {NULL, NULL}};
+static void write_fast_step(void *context, Text *out, int indent)
+{
+    Generation *g = context;
+    (void)indent;
+    template_expand(g->pool, out, g->templates, "fast_step.c.in", g->model->name, NULL, &states_rate_points, g);
+}
 
-const Insertions dual_rate_points = {(const char *const[]){"dual_rate.c.in", NULL}, dual_rate_point, NULL};
+static const Insertion dual_rate_point[] = {
+    {"assume", write_assume_caller}, {"fast step", write_fast_step}, {"rolling", write_rolling}, {NULL, NULL}};
 
-static const Insertion states_rate_point[] = {{"assume", write_assume_caller}, {NULL, NULL}};
+const Insertions dual_rate_points = {(const char *const[]){"dual_rate.c.in", "fast_step.c.in", NULL}, dual_rate_point,
+                                     NULL};
 
-const Insertions states_rate_points = {(const char *const[]){"states_rate.c.in", NULL}, states_rate_point, NULL};
+static const Insertion states_rate_point[] = {
+    {"assume", write_assume_caller}, {"fast step", write_fast_step}, {NULL, NULL}};
+
+const Insertions states_rate_points = {(const char *const[]){"states_rate.c.in", "fast_step.c.in", NULL},
+                                       states_rate_point, NULL};
 
 void write_wheel_functions(void *context, Text *out, int indent)
 {
@@ -285,13 +296,14 @@ void write_dual_rate(void *context, Text *out, int indent)
         line(out, indent, "offsetof(%s, link),", name);
         line(out, indent, "%s_any_link,", name);
         line(out, indent, "%s_any_fast,", name);
+        line(out, indent, "%s_any_fast_step,", name);
         line(out, indent, wheels_roll(g) ? "%s_any_roll," : "NULL, /* %s has no wheels with tires */", name);
         line(out, indent, "%s", g->model->powertrain ? pool_print(g->pool, "%s_any_shift,", name) : "NULL,");
         return;
     }
     line(out, indent, "0,");
     line(out, indent, "0,");
-    for (int i = 0; i < 4; ++i)
+    for (int i = 0; i < 5; ++i)
         line(out, indent, "NULL,");
 }
 

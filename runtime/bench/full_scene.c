@@ -143,7 +143,8 @@ static gic_model timed_code(const gic_model *code)
     out.link = code->link ? timed_link : NULL;
     out.rhs = timed_rhs;
     out.fast = code->fast ? timed_fast : NULL;
-    out.march = NULL; /* the step is then made of the calls above */
+    out.march = NULL; /* steps are then made of the calls above */
+    out.fast_step = NULL;
     return out;
 }
 
