@@ -213,9 +213,8 @@ static Options read_options(int count, char **word)
                     NULL);
     if (options.spread && (!options.implicit || fmu))
         usage_error("it goes with --implicit, for the code of one vehicle", "--spread-jacobian");
-    if (options.implicit && !fmu && (options.task != TASK_GENERATE || options.batch.lanes || options.scene))
-        usage_error("--implicit is for an FMU and the code of one vehicle in any scene, without --batch, --lanes and "
-                    "--scene",
+    if (options.implicit && !fmu && (options.task != TASK_GENERATE || options.scene))
+        usage_error("--implicit is for an FMU and the code of one vehicle in any scene, without --batch and --scene",
                     NULL);
     if (options.tire_tables && options.task != TASK_GENERATE && options.task != TASK_BATCH)
         usage_error("--tire-tables is for code: it goes with --batch, --derivatives, --implicit, --lanes, --scene, "

@@ -114,16 +114,50 @@ static void write_accelerations_of(const Generation *g, Text *out, int indent, c
     }
 }
 
+/* Numbers of subset s that a function of columns is given: the address of the first `count` from `place` on of an
+ * array. Where they stand in rows, and are read, of a copy without gaps, whose room is declared in `copies`. */
+static const char *numbers_text(const Generation *g, Text *copies, const char *name, const char *array, int s,
+                                const char *place, int count, bool read)
+{
+    const int stride = g->plan->stride[s];
+    if (stride == 1 || !read)
+        return pool_print(g->pool, "%s + %s", array, place);
+    text_print(copies, "%s%s[%d]", copies->size ? ", " : "gic_real ", name, count);
+    return pool_print(g->pool, "%s_without_gaps(%s, %s + %s, %d, %d)", g->model->name, name, array, place, stride,
+                      count);
+}
+
 void write_columns_call(Generation *g, Text *out, int indent, int s)
 {
     const Subset *subset = &g->sequence->subset[s];
     if (subset->class < 0 || !g->columns[g->weighing]->motion[subset->class]->size)
         return;
     const Class *class = &g->sequence->class[subset->class];
-    line(out, indent, "/* stage %d: %s */", subset->stage, subset_title(g->pool, g->model, subset));
+    const Block *block = &g->columns[g->weighing]->motion[subset->class]->block;
+    const Generation *rows = reads_rows(g) ? g->lanes : g; /* whose places numbers have */
+    const Layout *layout = &g->plan->formula[subset->class]->layout;
+    const char *known[room(subset->knowns)], *q, *motion, *inertia;
+    Text copies = {.pool = g->pool};
     for (int i = 0; i < subset->knowns; ++i) {
-        line(out, indent, "links.known[%d] = %s + %s;", i, found_text(g, "motion"),
-             body_motion_text(g, subset->known[i]));
+        const int body = subset->known[i], owner = g->sequence->body_subset[body];
+        const int count = g->plan->formula[g->sequence->subset[owner].class]->layout.motion_size;
+        known[i] = numbers_text(rows, &copies, pool_print(g->pool, "known%d", i), found_text(g, "motion"), owner,
+                                body_motion_text(rows, body), count, block_reads(block, ARRAY_known, i));
+    }
+    q = numbers_text(rows, &copies, "q", "start", s, pool_print(g->pool, "%d", rows->plan->start_offset[s]),
+                     7 * layout->bodies, block_reads(block, ARRAY_q, 0));
+    motion = numbers_text(rows, &copies, "motion", found_text(g, "motion"), s, body_motion_text(rows, subset->body[0]),
+                          layout->bodies * layout->motion_size, block_reads(block, ARRAY_motion, 0));
+    inertia = numbers_text(rows, &copies, "inertia", found_text(g, "inertia"), s, subset_inertia_text(rows, s),
+                           layout->inertia_size, block_reads(block, ARRAY_inertia, 0));
+    line(out, indent, "/* stage %d: %s */", subset->stage, subset_title(g->pool, g->model, subset));
+    if (copies.size) {
+        line(out, indent, "{");
+        indent += 4;
+        line(out, indent, "%s;", copies.s);
+    }
+    for (int i = 0; i < subset->knowns; ++i) {
+        line(out, indent, "links.known[%d] = %s;", i, known[i]);
         line(out, indent, "known[%d] = column + %d;", i,
              g->columns[g->weighing]->offset[g->sequence->body_subset[subset->known[i]]]);
     }
@@ -133,14 +167,15 @@ void write_columns_call(Generation *g, Text *out, int indent, int s)
     }
     if (g->plan->formula[subset->class]->derived)
         line(out, indent, "links.derived = self->derived + %d;", g->plan->derived_offset[s]);
-    if (block_reads(&g->columns[g->weighing]->motion[subset->class]->block, ARRAY_acc, 0))
+    if (block_reads(block, ARRAY_acc, 0))
         write_accelerations_of(g, out, indent, subset);
     line(out, indent,
-         "%s_%s_%s(%s_k_%s_%s[%d], &links, known, act, start + %d, %s + %s, %s + %s, "
+         "%s_%s_%s(%s_k_%s_%s[%d], &links, known, act, %s, %s, %s, "
          "column + %d);",
          g->model->name, columns_name(g), class->name, g->model->name, columns_name(g), class->name,
-         class_place(class, s), g->plan->start_offset[s], found_text(g, "motion"), body_motion_text(g, subset->body[0]),
-         found_text(g, "inertia"), subset_inertia_text(g, s), g->columns[g->weighing]->offset[s]);
+         class_place(class, s), q, motion, inertia, g->columns[g->weighing]->offset[s]);
+    if (copies.size)
+        line(out, indent - 4, "}");
 }
 
 static void write_calls(void *context, Text *out, int indent)
@@ -181,21 +216,21 @@ static void write_residuals_along(void *context, Text *out, int indent)
 {
     Generation *g = context;
     Constants none = {0};
-    block_emit(out, &columns_of(g)->residuals, g->style, &none, indent);
+    block_emit(out, placed_block(g, &columns_of(g)->residuals), g->style, &none, indent);
 }
 
 static void write_solution(void *context, Text *out, int indent)
 {
     Generation *g = context;
     Constants none = {0};
-    block_emit(out, &columns_of(g)->solution, g->style, &none, indent);
+    block_emit(out, placed_block(g, &columns_of(g)->solution), g->style, &none, indent);
 }
 
 static void write_rates(void *context, Text *out, int indent)
 {
     Generation *g = context;
     Constants none = {0};
-    block_emit(out, &columns_of(g)->block, g->style, &none, indent);
+    block_emit(out, placed_block(g, &columns_of(g)->block), g->style, &none, indent);
 }
 
 /* The columns that are left, by their numbers. */
@@ -272,6 +307,7 @@ static void write_whole(void *context, Text *out, int indent)
 void write_weighed_columns(Generation *g, Text *out)
 {
     g->weighing = true;
+    write_row_copies(g, out);
     template_expand(g->pool, out, g->templates, is_spread(g) ? "columns_spread.c.in" : "columns_weighed.c.in",
                     g->model->name, NULL, &columns_points, g);
     g->weighing = false;

@@ -161,6 +161,11 @@ const Block *whole_tangent(const Generation *g, const Block *block);
 /* flat.c: derivatives of code in lanes are computed one by one, from copies of what its recovery leaves in rows. The
  * generation that writes them: of the formulation without lanes; other code's own. */
 Generation *one_by_one(Generation *g);
+/* For weighed columns of code in lanes, which read rows: is this so; a block of the whole vehicle that does, for other
+ * columns the block itself. */
+bool reads_rows(const Generation *g);
+const Block *placed_block(const Generation *g, const Block *block);
+void write_row_copies(Generation *g, Text *out); /* the function that copies numbers of one subset from them */
 /* Where derivatives find "motion", "inertia" or "start" of an instance: self->motion, or the copy. */
 const char *found_text(const Generation *g, const char *array);
 /* Insertion points: pointers to them; members of the instance, function and call that copy; nothing without lanes. */

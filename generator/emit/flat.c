@@ -5,6 +5,7 @@
 #include "base/text.h"
 #include "emit/emit.h"
 #include "emit/emit_private.h"
+#include "expression/expression.h"
 #include "model/model.h"
 #include "sequence/sequence.h"
 #include "subset/subset.h"
@@ -39,9 +40,19 @@ Generation *one_by_one(Generation *g)
     return g->single;
 }
 
+bool reads_rows(const Generation *g)
+{
+    return g->lanes && g->weighing;
+}
+
+const Block *placed_block(const Generation *g, const Block *block)
+{
+    return reads_rows(g) ? block_in_rows(g->pool, g->lanes->formulation, block) : block;
+}
+
 const char *found_text(const Generation *g, const char *array)
 {
-    if (g->lanes)
+    if (g->lanes && !g->weighing)
         return pool_print(g->pool, "self->flat_%s", array);
     return strcmp(array, "start") ? pool_print(g->pool, "self->%s", array) : "self->start[self->head.flip]";
 }
@@ -68,8 +79,8 @@ void write_found_start(void *context, Text *out, int indent)
 
 void write_flat_members(void *context, Text *out, int indent)
 {
-    const Generation *g = context;
-    if (!g->formulation->single || !g->style->derivatives)
+    Generation *g = context;
+    if (!g->formulation->single || !has_tangents(one_by_one(g)))
         return;
     line(out, indent,
          "/* for derivatives, which are computed one by one: copies of motion, inertia and start without lanes */");
@@ -135,7 +146,7 @@ static void write_starts(void *context, Text *out, int indent)
 static const Insertion point[] = {
     {"flat motions", write_motions}, {"flat inertias", write_inertias}, {"flat starts", write_starts}, {NULL, NULL}};
 
-const Insertions flat_points = {(const char *const[]){"flat.c.in", NULL}, point, NULL};
+const Insertions flat_points = {(const char *const[]){"flat.c.in", "rows.c.in", NULL}, point, NULL};
 
 void write_flat(void *context, Text *out, int indent)
 {
@@ -143,6 +154,12 @@ void write_flat(void *context, Text *out, int indent)
     (void)indent;
     if (g->lanes)
         template_expand(g->pool, out, g->templates, "flat.c.in", g->model->name, NULL, &flat_points, g);
+}
+
+void write_row_copies(Generation *g, Text *out)
+{
+    if (g->lanes && g->lanes->plan->lanes)
+        template_expand(g->pool, out, g->templates, "rows.c.in", g->model->name, NULL, &flat_points, g);
 }
 
 void write_flat_call(void *context, Text *out, int indent)

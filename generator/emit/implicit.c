@@ -38,8 +38,9 @@ static int unknowns(const Generation *g)
     return count;
 }
 
-void write_implicit_sizes(Generation *g, Text *out, int indent)
+void write_implicit_sizes(Generation *whole, Text *out, int indent)
 {
+    Generation *g = one_by_one(whole);
     if (!g->style->implicit)
         return;
     line(out, indent, "%s_IMPLICIT_UNKNOWNS = %d,", g->upper, unknowns(g));
@@ -49,7 +50,7 @@ void write_implicit_sizes(Generation *g, Text *out, int indent)
 
 void write_implicit_members(void *context, Text *out, int indent)
 {
-    Generation *g = context;
+    Generation *g = one_by_one(context);
     if (!g->style->implicit)
         return;
     const RateColumns *weighed = weighed_columns(g);
@@ -204,7 +205,7 @@ const Insertions implicit_points = {(const char *const[]){"implicit.c.in", "impl
 
 void write_implicit_code(void *context, Text *out, int indent)
 {
-    Generation *g = context;
+    Generation *g = one_by_one(context);
     (void)indent;
     if (g->style->implicit)
         template_expand(g->pool, out, g->templates, "implicit.c.in", g->model->name, NULL, &implicit_points, g);

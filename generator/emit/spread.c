@@ -130,12 +130,12 @@ static const struct Spread *spread_of(Generation *g)
     if (columns->wheels)
         add_wheels(g, spread, columns, most);
     add(g, spread, (Piece){.kind = PIECE_CLEAR, .work = room(g->plan->unknowns) * padded_lanes(columns) / CLEARED});
-    add_block(g, spread, PIECE_WHOLE, &columns->residuals, most);
+    add_block(g, spread, PIECE_WHOLE, placed_block(g, &columns->residuals), most);
     const int solved = (block_work(&columns->solution) + 1) * SIDE_BY_SIDE / FASTER;
     if (columns->solution.stores)
         for (int first = 0; first < columns->lanes; first += SIDE_BY_SIDE)
             add(g, spread, (Piece){.kind = PIECE_SOLUTION, .work = solved, .first = first});
-    add_block(g, spread, PIECE_WHOLE, &columns->block, most);
+    add_block(g, spread, PIECE_WHOLE, placed_block(g, &columns->block), most);
     add_ranges(g, spread, PIECE_FINITE, states(g) * jacobian_columns(g), 1.0 / LOOKED_AT, most);
     add(g, spread, (Piece){.kind = PIECE_MASSES, .work = columns->masses / LOOKED_AT});
     add_factors(g, spread, most);
@@ -240,8 +240,21 @@ static void write_share_turn(void *context, Text *out, int indent)
         write_columns_turn(x->g, out, indent);
 }
 
-static const Insertion share_point[] = {
-    {"share turn", write_share_turn}, {"share statements", write_share_statements}, {NULL, NULL}};
+/* What the step's evaluation left in the instance. */
+static void write_share_found(void *context, Text *out, int indent)
+{
+    const Generation *g = ((const Expansion *)context)->g;
+    line(out, indent, "const gic_real *const x = self->x, *const xd = self->xd, *const u = self->input, *const m = %s;",
+         found_text(g, "motion"));
+    line(out, indent, "const gic_real *const p = self->parameter, *const port = self->port, *const n = %s;",
+         found_text(g, "inertia"));
+    line(out, indent, "const gic_real *const start = %s, *const fast = y + %s_SLOW;", found_text(g, "start"), g->upper);
+}
+
+static const Insertion share_point[] = {{"share found", write_share_found},
+                                        {"share turn", write_share_turn},
+                                        {"share statements", write_share_statements},
+                                        {NULL, NULL}};
 
 const Insertions share_points = {(const char *const[]){"columns_share.c.in", NULL}, share_point, NULL};
 
@@ -262,7 +275,7 @@ static void write_side_statements(void *context, Text *out, int indent)
     Generation *g = context;
     Constants none = {0};
     line(out, indent, "for (c = first; c < first + %d; ++c) {", SIDE_BY_SIDE);
-    block_emit(out, &columns_of(g)->solution, g->style, &none, indent + 4);
+    block_emit(out, placed_block(g, &columns_of(g)->solution), g->style, &none, indent + 4);
     line(out, indent, "}");
 }
 

@@ -112,7 +112,7 @@ Block wheel_columns_link(Generation *g)
     const Block *part = &columns_of(g)->wheels->link;
     for (int i = 0; i < part->stores; ++i)
         block_store(&both, part->store[i].value, part->store[i].target);
-    return both;
+    return *placed_block(g, &both);
 }
 
 static void write_link(void *context, Text *out, int indent)

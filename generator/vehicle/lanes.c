@@ -337,6 +337,12 @@ static Block *move_block(Pool *pool, const Moves *moves, const Block *block)
     return moved;
 }
 
+const Block *block_in_rows(Pool *pool, const Formulation *rows, const Block *block)
+{
+    const Moves moves = find_moves(pool, rows->single->plan, rows->plan);
+    return move_block(pool, &moves, block);
+}
+
 /* The blocks as the scene left them, reading numbers from rows. They are not made anew, and the equations of motion are
  * not packed: so they keep what the scene saves, and every operation, so that results keep their bits. */
 static void move_blocks(Pool *pool, Formulation *f, const Plan *from)

@@ -372,6 +372,8 @@ int lanes_of(const char *word);
 /* The formulation for code that solves members of a class side by side in vectors of up to `most` lanes, a power of 2:
  * the same number of all members is one row, one lane a column. */
 const Formulation *formulation_lanes(Pool *pool, const Formulation *formulation, int most);
+/* A block of the whole vehicle of rows->single, with m[] and n[] where the code in lanes `rows` has them. */
+const Block *block_in_rows(Pool *pool, const Formulation *rows, const Block *block);
 /* The number of rows of members of a class; without lanes, the number of members. */
 int class_rows(const Plan *plan, int class);
 

@@ -76,8 +76,7 @@ static void run_scene(void *context)
     const Scene *scene;
     const Model *model = read_scene(work, &scene);
     scene = equilibrium_start(pool, model, scene, open->options.solve);
-    scene = scene_choose_step(pool, model, scene, open->options.solve,
-                              !open->options.lanes && engine_has_implicit(open->engine_name), true);
+    scene = scene_choose_step(pool, model, scene, open->options.solve, engine_has_implicit(open->engine_name), true);
     work->engine = engine_open_run(pool, open->engine_name, model, scene, open->general ? NULL : work->path, false,
                                    &open->options);
     const Request request = {.scene = work->path, .quiet = true, .columns = &work->columns};

@@ -293,8 +293,8 @@ static void compute(Writing *w, const Model *model, const Scene *scene, const Re
     if (runs)
         scene = equilibrium_start(pool, model, scene, request->solve);
     if (w->kind == RUN)
-        scene = scene_choose_step(pool, model, scene, request->solve,
-                                  !open->options.lanes && engine_has_implicit(open->engine_name), request->quiet);
+        scene = scene_choose_step(pool, model, scene, request->solve, engine_has_implicit(open->engine_name),
+                                  request->quiet);
     const Scene *whole = scene;
     if (w->study->replay)
         scene = scene_replay(pool, model, scene, w->study->replay);

@@ -70,24 +70,22 @@ bool engine_has_implicit(const char *name)
     return engine_generates(name) && engine_opener[engine_index(name)] != engine_tape && engine_is_whole(name);
 }
 
-static void check_implicit(Pool *pool, const char *name, const Scene *scene, const EngineOptions *options)
+static void check_implicit(Pool *pool, const char *name, const Scene *scene)
 {
     if (!engine_has_implicit(name))
         scene_no_implicit(scene, pool_print(pool, "the engine '%s'", name));
-    if (options->lanes)
-        scene_no_implicit(scene, "code in lanes");
 }
 
 const Engine *engine_open_run(Pool *pool, const char *name, const Model *model, const Scene *scene, const char *path,
                               bool drawn, const EngineOptions *options)
 {
     EngineOptions own = *options;
-    own.exact = scene->method == METHOD_BDF && engine_has_implicit(name) && !options->lanes;
+    own.exact = scene->method == METHOD_BDF && engine_has_implicit(name);
     own.implicit = scene_implicit(scene) || own.exact;
     own.spread = scene->spread;
     stepper_need(scene->method);
     if (scene_implicit(scene))
-        check_implicit(pool, name, scene, options);
+        check_implicit(pool, name, scene);
     own.facts = path && !own.implicit ? scene_facts(pool, model, scene, path, drawn) : NULL;
     own.validation = scene_validation(pool, model, scene);
     const Engine *engine = engine_open(pool, name, model, &own);

@@ -313,7 +313,6 @@ scene 1 0.01 'integrator: ros3' >good.scene
 for engine in tape gic gcp1; do
     refused "the engine '$engine' does not take implicit steps (ros3) yet" 'rk4' --engine $engine "$models/pendulum.veh" good.scene -o none.csv
 done
-refused 'code in lanes does not take implicit steps' 'rk4' --engine cc --lanes 4 "$models/hmmwv.veh" good.scene -o none.csv
 refused 'a page of --drive does not take implicit steps' 'rk4' --drive none.csv.html "$models/hmmwv_vehicle.veh" good.scene
 refused 'the run to an operating point does not take implicit steps' 'rk4' --linearize --at 0.5 "$models/pendulum.veh" good.scene -o none.npz
 scene 1 0.01 'integrator: ros4' >bad.scene
