@@ -439,11 +439,17 @@ static int is_spread(const Implicit *w)
     return w->other && w->head->spread > 0 && w->head->keep > 1;
 }
 
-/* The share of this step, one of those that the present Jacobian still serves, of what is left to do. */
-static int implicit_share(const Implicit *w, void *self, gic_real time, const gic_real *from, gic_real reach)
+/* Rounds of this many steps have one to spare. */
+enum { SPARE_FROM = 8 };
+
+/* The share of this step, one of those that the present Jacobian still serves, of what is left to do. A step with an
+ * evaluation that checks itself, which takes long already, makes none where one of the round is to spare. */
+static int implicit_share(const Implicit *w, void *self, gic_real time, const gic_real *from, gic_real reach,
+                          int checks)
 {
     const gic_implicit *how = w->how;
-    const int32_t first = w->head->shared, left = w->head->keep - w->head->used + 1;
+    const int32_t spare = w->head->keep < SPARE_FROM ? 0 : 1;
+    const int32_t first = w->head->shared, left = w->head->keep - w->head->used + 1 - spare;
     const int32_t before = first > 0 ? how->share_work[first - 1] : 0;
     const int32_t work = how->share_work[how->share_count - 1] - before;
     int32_t end = first;
@@ -453,7 +459,7 @@ static int implicit_share(const Implicit *w, void *self, gic_real time, const gi
             break;
         done = then;
     }
-    if (first == end || w->head->lost)
+    if (first == end || w->head->lost || (checks && spare && left > 0))
         return GIC_OK;
     w->head->shared = end;
     const int status = how->share(self, time, from, first, end, reach, w->other, w->other_factor);
@@ -493,9 +499,10 @@ static int implicit_begin(const Implicit *w, void *self, gic_real time, const gi
     return GIC_OK;
 }
 
-/* Jacobian and factors for a step from this state, those that are kept or new ones. */
+/* Jacobian and factors for a step from this state, those that are kept or new ones. checks: does an evaluation of this
+ * step check itself? */
 static int implicit_prepare(Implicit *w, const gic_model *model, void *self, gic_real time, int32_t method,
-                            const gic_real *from, gic_real reach)
+                            const gic_real *from, gic_real reach, int checks)
 {
     const gic_head *head = (const gic_head *)self;
     const int on = w->head->used > 0 && w->head->reach == reach && head->method == method && head->steps > 0;
@@ -506,7 +513,7 @@ static int implicit_prepare(Implicit *w, const gic_model *model, void *self, gic
         status = implicit_change(w, model, self, reach);
     else
         return implicit_begin(w, self, time, from, reach);
-    return status == GIC_OK && is_spread(w) ? implicit_share(w, self, time, from, reach) : status;
+    return status == GIC_OK && is_spread(w) ? implicit_share(w, self, time, from, reach, checks) : status;
 }
 
 /* What the inputs change within a step, in drift[]: B du, or W B du. Inputs are those of `time` afterwards. */
@@ -526,14 +533,16 @@ static void implicit_drift(const gic_model *model, void *self, const Implicit *w
             w->drift[i] += w->jacobian[w->how->columns * i + w->n + k] * (w->change[k] - input[k]);
 }
 
-/* ROS3, or ROS2 (also for steps of IMEX without history), for the whole state, with its rate at `from`. */
+/* ROS3, or ROS2 (also for steps of IMEX without history), for the whole state, with its rate at `from`; checked: that
+ * was checked. */
 static int rosenbrock(const gic_model *model, void *self, gic_real time, gic_real step, int32_t method,
-                      const gic_real *from, const gic_real *rate, gic_real *next)
+                      const gic_real *from, const gic_real *rate, int checked, gic_real *next)
 {
     const Rosenbrock *r = method == GIC_ROS3 ? &ros3 : &ros2;
     Implicit w = implicit_of(model, self);
     const gic_real reach = r->gamma * step;
-    int status = implicit_prepare(&w, model, self, time, method, from, reach);
+    const int checks = checked || ((const gic_head *)self)->unchecked < r->stages - 1;
+    int status = implicit_prepare(&w, model, self, time, method, from, reach, checks);
     if (status != GIC_OK)
         return status;
     implicit_drift(model, self, &w, time, step);
@@ -582,13 +591,13 @@ static gic_real *last_change(const Implicit *w)
  *     (1 - 2/3 h A) d = -2/3 (y0 - y1) + 2/3 h (2 f0 - f1)
  *
  * by which the next state differs from 2 y0 - y1: no product with A is needed, and A may change from step to step.
- * past: f1. */
+ * past: f1; checked: f0 was checked. */
 static int imex(const gic_model *model, void *self, gic_real time, gic_real step, const gic_real *from,
-                const gic_real *rate, const gic_real *past, gic_real *next)
+                const gic_real *rate, const gic_real *past, int checked, gic_real *next)
 {
     Implicit w = implicit_of(model, self);
     const gic_real part = GIC_R(0.66666666666666663), reach = part * step, *const last = last_change(&w);
-    const int status = implicit_prepare(&w, model, self, time, GIC_IMEX, from, reach);
+    const int status = implicit_prepare(&w, model, self, time, GIC_IMEX, from, reach, checked);
     if (status != GIC_OK)
         return status;
     for (int32_t i = 0; i < w.n; ++i)
@@ -608,17 +617,18 @@ static int advance(const gic_model *model, void *self, gic_real time, gic_real s
                    const gic_real *from, const gic_real *past, gic_real *rate, gic_real *next, gic_real *work,
                    const gic_real **newest)
 {
-    const int32_t n = model->slow_count + model->fast_count;
+    const int32_t n = model->slow_count + model->fast_count, unchecked = ((const gic_head *)self)->unchecked;
     int status = evaluate(model, self, time, from, rate);
     if (status != GIC_OK)
         return status;
     *newest = rate;
+    const int checked = ((const gic_head *)self)->unchecked > unchecked;
     if (past && method == GIC_IMEX)
-        status = imex(model, self, time, step, from, rate, past, next);
+        status = imex(model, self, time, step, from, rate, past, checked, next);
     else if (past)
         adams_bashforth(n, step, from, rate, past, past + n, next);
     else if (method > GIC_RK4)
-        status = rosenbrock(model, self, time, step, method, from, rate, next);
+        status = rosenbrock(model, self, time, step, method, from, rate, checked, next);
     else
         status = runge_kutta(model, self, time, step, from, rate, next, work);
     return status == GIC_OK ? settle(model, self, next) : status;

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # test_spread.sh GICGEN GICRUN: Jacobians that steps make by shares: the whole from pieces has the bits of the whole, orders stay, a copy
-# in the middle of shares goes on with the same bits.
+# in the middle of shares goes on with the same bits; steps that check themselves make no shares.
 gicgen=$(realpath "$1")
 gicrun=$(realpath "$2")
 root=$(cd "$(dirname "$0")/../.." && pwd)
@@ -73,6 +73,21 @@ int main(void)
                 failed += JOIN(MODEL, _step)(&copy, 0.001, method[m]) != GIC_OK;
             failed += memcmp(copy.state, car.state, sizeof car.state) != 0;
         }
+        /* steps that check themselves make no shares, and rounds end in time */
+        begin(16);
+        int checks = 0;
+        for (int i = 0; i < 900; ++i) {
+            const int unchecked = car.head.unchecked, shared = car.implicit.shared, used = car.implicit.used;
+            failed += JOIN(MODEL, _step)(&car, 0.0005, method[m]) != GIC_OK;
+            if (i > 16 && car.head.unchecked > unchecked && used < 16 && shared > 0) {
+                ++checks;
+                failed += car.implicit.shared != shared;
+            }
+        }
+#ifdef SPREAD
+        if (checks < 3 || car.implicit.jacobian_count > 900 / 16 + 3)
+            failed += fprintf(stderr, "method %d: %d checks, %d Jacobians\n", (int)method[m], checks, (int)car.implicit.jacobian_count);
+#endif
     }
     return failed != 0;
 }
