@@ -4,7 +4,7 @@
 # and in lanes of 4 (environment LANES: another width), by turns in one run, with the error of the place after a second in a crosswind, from where
 # the model is drawn, against rk4 at 31 us, and the longest step of each (implicit.c); the code is compiled with `-O2 -march=native` or the FLAGs,
 # which takes minutes.
-gicgen=$1
+gicgen=$(realpath "$1")
 shift
 [ $# -gt 0 ] || set -- -O2 -march=native
 here=$(cd "$(dirname "$0")" && pwd)
