@@ -17,7 +17,11 @@
 #include <math.h>
 #include <string.h>
 
-enum { LOOKS = 4, METHODS = 4 };
+enum {
+    LOOKS = 4,
+    STEPS = 5000, /* variable ones at most; where more are needed, the motion that asks for them is seen by then */
+    METHODS = 4
+};
 
 static const double start = 0.1;     /* s that are looked at */
 static const double reserve = 0.9;   /* of the longest stable step: motions change along the run */
@@ -93,9 +97,10 @@ static void go(Choice *choice, int32_t ratio)
     if (!variable)
         diag_fail(program_place(), NULL, "no memory for the integrator");
     const double end = fmin(start, scene->duration);
-    for (int i = 0; i < LOOKS && status == GIC_OK; ++i) {
+    int steps = 0;
+    for (int i = 0; i < LOOKS && status == GIC_OK && steps < STEPS; ++i) {
         const double next = end * i / (LOOKS - 1);
-        while (status == GIC_OK && gic_time(choice->self) < next)
+        while (status == GIC_OK && gic_time(choice->self) < next && steps++ < STEPS)
             status = scene_step(choice->engine, choice->engine->code, scene, variable, choice->self, next);
         if (status == GIC_OK)
             look(choice, ratio);

@@ -123,6 +123,12 @@ sed 's/^step: .*/step: 0.02/; s/^output_step: .*/output_step: 0.1/' auto.scene >
 run --engine tape oscillator.veh tape.scene -o auto.csv
 check "auto: no implicit steps with the tape" says "integrator auto: [abrk34]*, "
 mv one_by_one pulled
+# a state a thousand million times as fast as a second: the way ahead by variable steps ends
+{ cat oscillator.veh && printf 'states:\n  lag: {rate: "(time - lag) / 1e-9"}\n'; } >lag.veh
+sed 's/^step: .*/step: 0.02/; s/^output_step: .*/output_step: 0.1/' auto.scene >lag.scene
+timeout 60 "$gicrun" lag.veh lag.scene -o auto.csv >out 2>err
+verdict $? "auto: beside a state of 1 ns"
+check "auto: what limits explicit steps there" grep -q "ab3 is stable up to 5.4[0-9]*e-10 s, .*: 'lag', eigenvalue -1e+09 1/s" err
 run --linearize --at 0.1 oscillator.veh auto.scene
 check "auto is refused where nothing chooses" says 'does not choose an integrator (auto) yet'
 
