@@ -176,8 +176,9 @@ static _Noreturn void refuse_key(Pool *pool, const ManoeuvreKind *kind, const ch
 {
     Text known = {.pool = pool};
     for (int k = 0; k < MANOEUVRE_KEYS && kind->key[k].name; ++k)
-        text_print(&known, "%s %s=%.6g %s (%s)", k ? "," : "one of", kind->key[k].name, kind->key[k].value,
-                   kind->key[k].unit, kind->key[k].about);
+        text_print(&known, "%s %s=%.6g%s%s (%s; %g to %g)", k ? "," : "one of", kind->key[k].name, kind->key[k].value,
+                   *kind->key[k].unit ? " " : "", kind->key[k].unit, kind->key[k].about, kind->key[k].least,
+                   kind->key[k].most);
     diag_fail_call(program_place(), known.s, "%s takes no '%s'", kind->name, word);
 }
 
