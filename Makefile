@@ -403,6 +403,7 @@ bench: all
 	$(foreach part,$(PARTS),@sh tests/bench/parts.sh run $(BUILD)/bench/parts.csv $(part) \
 	    $(BUILD)/gicbench $(if $(QUICK),--quick) $(measured_$(part))$(newline))
 	$(if $(QUICK),,sh tests/bench/fleet.sh $(BUILD)/gicgen >$(BUILD)/bench/fleet.txt)
+	$(if $(QUICK),,sh tests/bench/single.sh $(BUILD)/gicgen >$(BUILD)/bench/single.txt)
 
 # what it measured, into the pages
 tables:

@@ -355,8 +355,8 @@ fmu_result fmu_set_real(fmu_instance *instance, uint32_t reference, double value
         data->start[i] = (gic_real)value;
         data->set[i] = 1;
     } else if (kind == FMU_SOLVER && i == FMU_SOLVER_STEP && mode & modes) {
-        if (!(value > 0))
-            return fmu_say(instance, FMU_DISCARD, "solver.step must be greater than zero, not %g", value);
+        if (!(value >= 1e-9)) /* as the model description says */
+            return fmu_say(instance, FMU_DISCARD, "solver.step must be 1e-9 s or more, not %g", value);
         data->step = (gic_real)value;
     } else if (mode & modes) {
         return unknown(instance, reference);

@@ -50,6 +50,9 @@ says_of() { # MESSAGE NAME=VALUE
 }
 check "no method 6" says_of "1 (AB3), 2 (RK4), 3 (ROS2), 4 (ROS3) or 5 (IMEX), not 6" solver.method=6
 check "no Jacobian for 0 steps" says_of "from 1 to 1000, not 0" solver.keep_jacobian=0
+for step in 0 -0.01 9e-10; do
+    check "no step of $step" says_of "solver.step must be 1e-9 s or more, not $step" solver.step=$step
+done
 drive cvode 1e-9 0.02 1 >"$work/unit.csv" 2>"$work/err" &&
     "$gicrun" -q --general --engine tcc --integrator adams --tolerance 1e-11 "$root/models/quarter_car.veh" "$work/quarter.scene" -o "$work/variable.csv" 2>>"$work/err" &&
     as_run 1e-7 "$work/variable.csv" "m rad 1 m/s rad/s"
