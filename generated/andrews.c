@@ -2606,6 +2606,7 @@ static GIC_COLD GIC_APART int andrews_residual(const andrews *self, gic_real lar
     (void)self, (void)one;
     largest[0] = largest[1] = R(0.0);
     links.cold = 0;
+    (void)links;
     links.x[0] = self->x[ANDREWS_X_BETA];
     links.rate[0] = self->xd[ANDREWS_X_BETA];
     andrews_residual_K1(andrews_k_K1[0], &links, self->motion + ANDREWS_MOTION_K1, one);

@@ -4269,6 +4269,7 @@ static GIC_COLD GIC_APART int five_link_residual(const five_link *self, gic_real
     (void)self, (void)one;
     largest[0] = largest[1] = R(0.0);
     links.cold = 0;
+    (void)links;
     links.x[0] = self->x[FIVE_LINK_X_RACK];
     links.rate[0] = self->xd[FIVE_LINK_X_RACK];
     five_link_residual_rack(five_link_k_rack[0], &links, self->motion + FIVE_LINK_MOTION_RACK, one);

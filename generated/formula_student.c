@@ -7940,6 +7940,7 @@ static GIC_COLD GIC_APART int formula_student_residual(const formula_student *se
     (void)self, (void)one;
     largest[0] = largest[1] = R(0.0);
     links.cold = 0;
+    (void)links;
     links.x[0] = self->x[FORMULA_STUDENT_X_FRONT_SPRING_L];
     links.rate[0] = self->xd[FORMULA_STUDENT_X_FRONT_SPRING_L];
     formula_student_residual_front_rocker_l(formula_student_k_front_rocker_l[0], &links, self->motion +

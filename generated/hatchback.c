@@ -17973,6 +17973,7 @@ static GIC_COLD GIC_APART int hatchback_residual(const hatchback *self, gic_real
     (void)self, (void)one;
     largest[0] = largest[1] = R(0.0);
     links.cold = 0;
+    (void)links;
     links.x[0] = self->x[HATCHBACK_X_FRAME_Z];
     links.rate[0] = self->xd[HATCHBACK_X_FRAME_Z];
     links.x[1] = self->x[HATCHBACK_X_FRAME_X];

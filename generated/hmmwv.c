@@ -3371,6 +3371,7 @@ static GIC_COLD GIC_APART int hmmwv_residual(const hmmwv *self, gic_real largest
     (void)self, (void)one;
     largest[0] = largest[1] = R(0.0);
     links.cold = 0;
+    (void)links;
     links.x[0] = self->x[HMMWV_X_RACK];
     links.rate[0] = self->xd[HMMWV_X_RACK];
     hmmwv_residual_rack(hmmwv_k_rack[0], &links, self->motion + HMMWV_MOTION_RACK, one);

@@ -4863,6 +4863,7 @@ static GIC_COLD GIC_APART int hmmwv14_residual(const hmmwv14 *self, gic_real lar
     (void)self, (void)one;
     largest[0] = largest[1] = R(0.0);
     links.cold = 0;
+    (void)links;
     links.x[0] = self->x[HMMWV14_X_RACK];
     links.rate[0] = self->xd[HMMWV14_X_RACK];
     hmmwv14_residual_rack(hmmwv14_k_rack[0], &links, self->motion + HMMWV14_MOTION_RACK, one);

@@ -3829,6 +3829,7 @@ static GIC_COLD GIC_APART int hmmwv_full_residual(const hmmwv_full *self, gic_re
     (void)self, (void)one;
     largest[0] = largest[1] = R(0.0);
     links.cold = 0;
+    (void)links;
     links.x[0] = self->x[HMMWV_FULL_X_RACK];
     links.rate[0] = self->xd[HMMWV_FULL_X_RACK];
     hmmwv_full_residual_rack(hmmwv_full_k_rack[0], &links, self->motion + HMMWV_FULL_MOTION_RACK, one);

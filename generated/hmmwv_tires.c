@@ -4602,6 +4602,7 @@ static GIC_COLD GIC_APART int hmmwv_tires_residual(const hmmwv_tires *self, gic_
     (void)self, (void)one;
     largest[0] = largest[1] = R(0.0);
     links.cold = 0;
+    (void)links;
     links.x[0] = self->x[HMMWV_TIRES_X_RACK];
     links.rate[0] = self->xd[HMMWV_TIRES_X_RACK];
     hmmwv_tires_residual_rack(hmmwv_tires_k_rack[0], &links, self->motion + HMMWV_TIRES_MOTION_RACK, one);

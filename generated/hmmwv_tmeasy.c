@@ -4616,6 +4616,7 @@ static GIC_COLD GIC_APART int hmmwv_tmeasy_residual(const hmmwv_tmeasy *self, gi
     (void)self, (void)one;
     largest[0] = largest[1] = R(0.0);
     links.cold = 0;
+    (void)links;
     links.x[0] = self->x[HMMWV_TMEASY_X_RACK];
     links.rate[0] = self->xd[HMMWV_TMEASY_X_RACK];
     hmmwv_tmeasy_residual_rack(hmmwv_tmeasy_k_rack[0], &links, self->motion + HMMWV_TMEASY_MOTION_RACK, one);

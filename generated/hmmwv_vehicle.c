@@ -4970,6 +4970,7 @@ static GIC_COLD GIC_APART int hmmwv_vehicle_residual(const hmmwv_vehicle *self, 
     (void)self, (void)one;
     largest[0] = largest[1] = R(0.0);
     links.cold = 0;
+    (void)links;
     links.x[0] = self->x[HMMWV_VEHICLE_X_RACK];
     links.rate[0] = self->xd[HMMWV_VEHICLE_X_RACK];
     hmmwv_vehicle_residual_rack(hmmwv_vehicle_k_rack[0], &links, self->motion + HMMWV_VEHICLE_MOTION_RACK, one);

@@ -3297,6 +3297,7 @@ static GIC_COLD GIC_APART int motorcycle_residual(const motorcycle *self, gic_re
     (void)self, (void)one;
     largest[0] = largest[1] = R(0.0);
     links.cold = 0;
+    (void)links;
     links.x[0] = self->x[MOTORCYCLE_X_SPRING];
     links.rate[0] = self->xd[MOTORCYCLE_X_SPRING];
     motorcycle_residual_arm(motorcycle_k_arm[0], &links, self->motion + MOTORCYCLE_MOTION_ARM, one);

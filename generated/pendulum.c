@@ -620,6 +620,7 @@ static GIC_COLD GIC_APART int pendulum_residual(const pendulum *self, gic_real l
     (void)self, (void)one;
     largest[0] = largest[1] = R(0.0);
     links.cold = 0;
+    (void)links;
     links.x[0] = self->x[PENDULUM_X_ANGLE];
     links.rate[0] = self->xd[PENDULUM_X_ANGLE];
     pendulum_residual_rod(pendulum_k_rod[0], &links, self->motion + PENDULUM_MOTION_ROD, one);

@@ -1450,6 +1450,7 @@ static GIC_COLD GIC_APART int quarter_car_residual(const quarter_car *self, gic_
     (void)self, (void)one;
     largest[0] = largest[1] = R(0.0);
     links.cold = 0;
+    (void)links;
     links.x[0] = self->x[QUARTER_CAR_X_BOUNCE];
     links.rate[0] = self->xd[QUARTER_CAR_X_BOUNCE];
     quarter_car_residual_carriage(quarter_car_k_carriage[0], &links, self->motion + QUARTER_CAR_MOTION_CARRIAGE, one);

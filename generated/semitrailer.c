@@ -14150,6 +14150,7 @@ static GIC_COLD GIC_APART int semitrailer_residual(const semitrailer *self, gic_
     (void)self, (void)one;
     largest[0] = largest[1] = R(0.0);
     links.cold = 0;
+    (void)links;
     links.x[0] = self->x[SEMITRAILER_X_STEER_SPRING_L];
     links.rate[0] = self->xd[SEMITRAILER_X_STEER_SPRING_L];
     links.x[1] = self->x[SEMITRAILER_X_STEER_SPRING_R];

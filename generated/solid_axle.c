@@ -4167,6 +4167,7 @@ static GIC_COLD GIC_APART int solid_axle_residual(const solid_axle *self, gic_re
     (void)self, (void)one;
     largest[0] = largest[1] = R(0.0);
     links.cold = 0;
+    (void)links;
     links.x[0] = self->x[SOLID_AXLE_X_RACK];
     links.rate[0] = self->xd[SOLID_AXLE_X_RACK];
     solid_axle_residual_rack(solid_axle_k_rack[0], &links, self->motion + SOLID_AXLE_MOTION_RACK, one);

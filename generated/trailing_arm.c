@@ -3321,6 +3321,7 @@ static GIC_COLD GIC_APART int trailing_arm_residual(const trailing_arm *self, gi
     (void)self, (void)one;
     largest[0] = largest[1] = R(0.0);
     links.cold = 0;
+    (void)links;
     links.x[0] = self->x[TRAILING_ARM_X_RACK];
     links.rate[0] = self->xd[TRAILING_ARM_X_RACK];
     trailing_arm_residual_rack(trailing_arm_k_rack[0], &links, self->motion + TRAILING_ARM_MOTION_RACK, one);

@@ -43,6 +43,16 @@ static bool next_is_read(const Reader *reader, int state)
     return false;
 }
 
+/* True if a program supplies what the state holds, which it may have for itself alone. */
+static bool is_program_s(const Model *model, int state)
+{
+    bool is = false;
+    for (int c = 0; c < model->controllers; ++c)
+        for (int k = 0; k < model->controller[c].rules; ++k)
+            is = is || (model->controller[c].rule[k].state == state && model->controller[c].rule[k].signal < 0);
+    return is;
+}
+
 void unread_tell(const Reader *reader)
 {
     const Model *model = reader->model;
@@ -56,7 +66,7 @@ void unread_tell(const Reader *reader)
         if (!model->table[i].read)
             tell(model->table[i].at, "table", model->table[i].name);
     for (int i = 0; i < model->states; ++i)
-        if (!model->state[i].read && !next_is_read(reader, i))
+        if (!model->state[i].read && !next_is_read(reader, i) && !is_program_s(model, i))
             tell(model->state[i].at, model->state[i].rate ? "state" : "rule", model->state[i].name);
     for (int i = 0; i < model->signals; ++i) {
         const Signal *signal = &model->signal[i];

@@ -309,6 +309,14 @@ refused 6:14 "value of signal 's': there is no 'c.q'" "did you mean 'c.a'?" '{c:
 printf 'gicgen: 1\nmodel: m\nbase: car\nbodies: {car: {mass: 1, com: [0, 0, 0], inertia: [1, 1, 1]}}\ncontrollers: {c: {period: 1, rules: {a: 1}}}\n' >idle.veh
 "$gicgen" idle.veh -o idle.c 2>said && grep -q "warning: nothing in the model reads rule 'c.a'" said
 verdict $? "a rule that nothing reads: $(head -n 1 said)"
+sed 's/{a: 1}/{a: {unit: m}}/' idle.veh >program.veh
+"$gicgen" program.veh -o program.c 2>said && [ ! -s said ]
+verdict $? "a rule that a program supplies, and may read alone: $(head -n 1 said)"
+for more in '' --derivatives --implicit; do # one body, no joints
+    # shellcheck disable=SC2086  # no word or one
+    "$gicgen" $more idle.veh -o idle.c 2>/dev/null && ${CC:-cc} -std=c99 -Wall -Wextra -Werror -pedantic -I. -I"$root/runtime" -c idle.c -o idle.o 2>said
+    verdict $? "a body alone compiles without warnings $more: $(head -n 1 said)"
+done
 
 # numbers of samples and effects follow from the time: a scene can not give them
 sed 's/{a: 1}/{a: {value: 1, delay: 0.4}}/' idle.veh >late.veh
