@@ -79,8 +79,8 @@ int located_back(Back *back, int64_t at, double weight)
     const TrailStep *last = trail_step(run->trail, at);
     const size_t size = (size_t)run->states * sizeof(double);
     const DriveSlope drive = back->drive;
-    /* At 0 the number of a contact has two slopes, of the load and of the distance: on whose side it is, rounding tells,
-     * and so it has to be evaluated from the same guess both times. */
+    /* At 0 the number of a contact has two slopes, of the load and of the distance: on whose side it is, rounding
+     * tells, and so it has to be evaluated from the same guess both times. */
     Instance *guess = run->happened.inner->self;
     double state[run->states + 1], sums[back->all_sums + 1];
     memcpy(guess, run->self, run->code->size);
