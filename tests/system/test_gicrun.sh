@@ -415,5 +415,25 @@ wait
 check 'results through a pipe' [ -p "$work/pipe" ] && check 'rows through a pipe' grep -q '^time' "$work/piped"
 check 'nothing is left behind in the end' clean
 
+# a coordinate that goes beyond its range, and one that goes to its end
+cat >"$work/slide.veh" <<'END'
+gicgen: 1
+model: slide
+gravity: [0, 0, 0]
+base: ground
+bodies:
+  m: {mass: 1, com: [0, 0, 0], inertia: [1, 1, 1]}
+joints:
+  p: {type: prismatic, bodies: [ground, m], axis: [1, 0, 0]}
+coordinates:
+  x: {type: translation, bodies: [ground, m], axis: [1, 0, 0], range: [-1, 1]}
+END
+for duration in 1 3; do
+    printf 'gicscene: 1\nduration: %s\nstep: 0.01\noutput_step: 0.1\nintegrator: rk4\ninitial: {rates: {x: -1}}\n' $duration >"$work/slide.scene"
+    run "$work/slide.veh" "$work/slide.scene" -o "$work/slide.csv"
+    beyond() { says "range                'x' is beyond \\[-1, 1\\] from t = 1.1 s on: -3 to 0 m in all"; }
+    [ $duration -eq 3 ] || beyond() { exits 0 && ! says 'beyond'; }
+    check "a range, $duration s" beyond
+done
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]
