@@ -380,7 +380,7 @@ static int locate(TangentRun *run, const Saved *start, double end, int c, double
     found->moves = slope > 0 && jump <= slope * most && condition_moves(run, c, &status);
     if (found->moves && !actions_of(run)->action[c].ends) /* what comes after has to have a piece of the step */
         found->time = fmin(found->time, end - least);
-    if (status == GIC_OK && !found->moves && jump > slope * most && jump > 0 && high < end && !is_instant(run, high) &&
+    if (status == GIC_OK && !found->moves && jump > slope * most && jump > 0 && !is_instant(run, high) &&
         condition_jumps(run->model, c)) {
         run->happened.failed = "a condition whose `if` jumps, and not between comparisons,";
         return GIC_ERROR_RESULT;
