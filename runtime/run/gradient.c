@@ -4,8 +4,8 @@
 #include "base/message.h"
 #include "gic_runtime.h"
 #include "host/host.h"
-#include "run/adjoint_run.h"
 #include "model/limits.h"
+#include "run/adjoint_run.h"
 #include "run/number_place.h"
 
 #include <math.h>

@@ -9,8 +9,8 @@
 #include "gic_runtime.h"
 #include "host/gsl_errors.h"
 #include "host/host.h"
-#include "run/fit_page.h"
 #include "model/limits.h"
+#include "run/fit_page.h"
 #include "run/number_place.h"
 #include "run/tangent_run.h"
 

@@ -7,8 +7,8 @@
  * least squares with weights |r|^(p - 2), towards r / (p - 1). It is damped as Levenberg and Marquardt do, with the
  * variables that stand at a bound and would leave it held, and cut off at the bounds. */
 #include "gic_runtime.h"
-#include "run/optimize.h"
 #include "model/limits.h"
+#include "run/optimize.h"
 #include "run/number_place.h"
 
 #include <math.h>

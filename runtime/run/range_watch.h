@@ -11,8 +11,9 @@
 
 typedef struct RangeWatch RangeWatch;
 
+/* For one run of a model; nothing has been seen yet. */
 RangeWatch *range_watch_new(Pool *pool, const Model *model);
-/* At a row, whose state is in the instance as generated code has it. */
+/* At a row: `at` is an instance of `code`, whose state array has coordinates (m or rad) at code->coordinate_state[]. */
 void range_watch_look(RangeWatch *watch, const gic_model *code, const gic_head *at);
 /* A line for each coordinate that was outside: since when (s), and how far it went (m or rad). */
 void range_watch_print(const RangeWatch *watch, Text *out);

@@ -13,10 +13,10 @@
 #include "run/knot.h"
 #include "run/last_good.h"
 #include "run/page_vehicle.h"
+#include "run/range_watch.h"
 #include "run/run.h"
 #include "run/sampling.h"
 #include "run/scene_events.h"
-#include "run/range_watch.h"
 #include "run/stability_watch.h"
 #include "run/variable_step.h"
 #include "scene/action.h"
@@ -255,13 +255,14 @@ static int compute_outputs(Run *run)
     return status == GIC_OK && run->animation ? animation_frame(run->animation, run->model, run->copy) : status;
 }
 
-/* Update what is known about the vehicle (tipped over, off the road, at rest) where the base's state is directly
- * available. */
+/* Update what is known about the vehicle (beyond ranges, tipped over, off the road, at rest) where the base's state is
+ * directly available. */
 static void look_at_vehicle(Run *run, const gic_head *at)
 {
-    if (!run->engine->leave)
-        range_watch_look(run->ranges, run->model, at);
-    if (run->model->free_base && run->model->wheel_count && !run->engine->leave)
+    if (run->engine->leave)
+        return;
+    range_watch_look(run->ranges, run->model, at);
+    if (run->model->free_base && run->model->wheel_count)
         outcome_look(&run->outcome, run->model, run->scene->road, gic_time(at),
                      instance_array((gic_head *)at, run->model->state_offset));
 }

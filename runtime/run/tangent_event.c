@@ -4,7 +4,8 @@
  * the change with T as it is, and dg/dT that of g where the piece is longer. So the state at T, and all that follows
  * from T, has the derivative of these very steps: the rest of the step, which is shorter, and inputs that begin at T.
  *
- * What jumps, as the gear, makes a condition true at a time that does not change. */
+ * What jumps, as the gear, makes a condition true at a time that does not change. Comparisons jump too, so the formula
+ * is the guard of condition_output.h; what jumps in it as a state passes a bound has no derivative. */
 #include "engine/engine.h"
 #include "gic_runtime.h"
 #include "run/condition_output.h"
@@ -134,28 +135,31 @@ int tangent_guard_output(const TangentRun *run, int condition)
     return run->outputs + run->happened.conditions + condition;
 }
 
+/* Outputs, or the numbers of contacts, of the vehicle at the present state; returns a status. */
+static int look_there(const TangentRun *run, double *press)
+{
+    const double time = gic_time(run->both);
+    double *state = tape_array(run->self, run->code->state_offset);
+    tangent_inputs_of(run, time);
+    tangent_take(run, tangent_array(run, run->descriptor.state_offset), 0, state);
+    return press ? run->code->contacts->press(run->self, time, state, press) : run->code->outputs(run->self);
+}
+
 /* Above 0 if a condition is true at the present state. */
 static int truth(const TangentRun *run, int c, double *value)
 {
-    tangent_inputs_of(run, gic_time(run->both));
-    tangent_take(run, tangent_array(run, run->descriptor.state_offset), 0,
-                 tape_array(run->self, run->code->state_offset));
-    const int status = run->code->outputs(run->self);
+    const int status = look_there(run, NULL);
     *value = tape_array(run->self, run->code->output_offset)[run->outputs + c];
     return status;
 }
 
 int tangent_guard(const TangentRun *run, int guard, double *value)
 {
-    const gic_model *code = run->code;
-    const double time = gic_time(run->both);
     const int contact = guard - run->happened.conditions;
-    double *state = tape_array(run->self, code->state_offset), press[GIC_CONTACTS];
-    tangent_inputs_of(run, time);
-    tangent_take(run, tangent_array(run, run->descriptor.state_offset), 0, state);
-    const int status = contact < 0 ? code->outputs(run->self) : code->contacts->press(run->self, time, state, press);
-    *value =
-        contact < 0 ? tape_array(run->self, code->output_offset)[tangent_guard_output(run, guard)] : press[contact];
+    double press[GIC_CONTACTS];
+    const int status = look_there(run, contact < 0 ? NULL : press);
+    *value = contact < 0 ? tape_array(run->self, run->code->output_offset)[tangent_guard_output(run, guard)]
+                         : press[contact];
     return status;
 }
 
