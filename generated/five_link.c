@@ -80,7 +80,7 @@
  */
 #include "five_link.h"
 
-#if FIVE_LINK_H != 0xb1dbafbb
+#if FIVE_LINK_H != 0x38584e01
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 

@@ -137,7 +137,7 @@
  */
 #include "formula_student.h"
 
-#if FORMULA_STUDENT_H != 0x540e2ae1
+#if FORMULA_STUDENT_H != 0xd7694247
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 

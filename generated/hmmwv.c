@@ -86,7 +86,7 @@
  */
 #include "hmmwv.h"
 
-#if HMMWV_H != 0x3bd1b89f
+#if HMMWV_H != 0xe71f4b05
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 

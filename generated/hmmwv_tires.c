@@ -90,7 +90,7 @@
  */
 #include "hmmwv_tires.h"
 
-#if HMMWV_TIRES_H != 0xc6d44985
+#if HMMWV_TIRES_H != 0x6a1df11b
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 

@@ -67,7 +67,7 @@
  */
 #include "motorcycle.h"
 
-#if MOTORCYCLE_H != 0x1b6b1265
+#if MOTORCYCLE_H != 0x9b79ce4f
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 

@@ -75,7 +75,7 @@
  */
 #include "solid_axle.h"
 
-#if SOLID_AXLE_H != 0xad8098d1
+#if SOLID_AXLE_H != 0x8905c241
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 

@@ -27,6 +27,16 @@ void gic_plane_height(const gic_road *road, int32_t lane, gic_real time, gic_rea
     out[2] = plane->sy;
 }
 
+void gic_plane_bend(const gic_road *road, int32_t lane, gic_real time, gic_real x, gic_real y, gic_real out[3])
+{
+    (void)road;
+    (void)lane;
+    (void)time;
+    (void)x;
+    (void)y;
+    out[0] = out[1] = out[2] = GIC_R(0.0);
+}
+
 void gic_sine_height(const gic_road *road, int32_t lane, gic_real time, gic_real x, gic_real y, gic_real out[3])
 {
     const gic_road_sine *sine = (const gic_road_sine *)(const void *)road;
@@ -40,14 +50,22 @@ void gic_sine_height(const gic_road *road, int32_t lane, gic_real time, gic_real
     out[2] = slope * sine->phase_per_y;
 }
 
-void gic_bumps_height(const gic_road *road, int32_t lane, gic_real time, gic_real x, gic_real y, gic_real out[3])
+void gic_sine_bend(const gic_road *road, int32_t lane, gic_real time, gic_real x, gic_real y, gic_real out[3])
 {
-    const gic_road_bumps *bumps = (const gic_road_bumps *)(const void *)road;
-    int32_t first = 0, behind = bumps->count;
+    const gic_road_sine *sine = (const gic_road_sine *)(const void *)road;
     (void)lane;
     (void)time;
-    out[0] = out[1] = out[2] = GIC_R(0.0);
-    /* bumps that begin more than the longest one's length before x have ended */
+    const gic_real wave = TWO_PI / sine->wavelength, across = sine->phase_per_y;
+    const gic_real bend = -sine->amplitude * MATH(sin)(wave * (x - sine->x0) + across * y);
+    out[0] = bend * wave * wave;
+    out[1] = bend * wave * across;
+    out[2] = bend * across * across;
+}
+
+/* The first bump that may not have ended before x: the others begin more than the longest one's length before it. */
+static int32_t first_bump(const gic_road_bumps *bumps, gic_real x)
+{
+    int32_t first = 0, behind = bumps->count;
     while (first < behind) {
         const int32_t middle = first + (behind - first) / 2;
         if (bumps->bump[middle].x < x - bumps->longest)
@@ -55,14 +73,41 @@ void gic_bumps_height(const gic_road *road, int32_t lane, gic_real time, gic_rea
         else
             behind = middle;
     }
-    for (int32_t i = first; i < bumps->count && !(bumps->bump[i].x >= x); ++i) {
+    return first;
+}
+
+static int is_on_bump(const gic_bump *bump, gic_real x, gic_real y)
+{
+    return !(x - bump->x >= bump->length || y < bump->y_low - GIC_ROAD_EDGE || y > bump->y_high + GIC_ROAD_EDGE);
+}
+
+void gic_bumps_height(const gic_road *road, int32_t lane, gic_real time, gic_real x, gic_real y, gic_real out[3])
+{
+    const gic_road_bumps *bumps = (const gic_road_bumps *)(const void *)road;
+    (void)lane;
+    (void)time;
+    out[0] = out[1] = out[2] = GIC_R(0.0);
+    for (int32_t i = first_bump(bumps, x); i < bumps->count && !(bumps->bump[i].x >= x); ++i) {
         const gic_bump *bump = &bumps->bump[i];
-        const gic_real along = x - bump->x;
-        if (along >= bump->length || y < bump->y_low - GIC_ROAD_EDGE || y > bump->y_high + GIC_ROAD_EDGE)
+        if (!is_on_bump(bump, x, y))
             continue;
-        const gic_real wave = TWO_PI / bump->length;
+        const gic_real along = x - bump->x, wave = TWO_PI / bump->length;
         out[0] += GIC_R(0.5) * bump->height * (GIC_R(1.0) - MATH(cos)(wave * along));
         out[1] += GIC_R(0.5) * bump->height * wave * MATH(sin)(wave * along);
+    }
+}
+
+void gic_bumps_bend(const gic_road *road, int32_t lane, gic_real time, gic_real x, gic_real y, gic_real out[3])
+{
+    const gic_road_bumps *bumps = (const gic_road_bumps *)(const void *)road;
+    (void)lane;
+    (void)time;
+    out[0] = out[1] = out[2] = GIC_R(0.0);
+    for (int32_t i = first_bump(bumps, x); i < bumps->count && !(bumps->bump[i].x >= x); ++i) {
+        const gic_bump *bump = &bumps->bump[i];
+        const gic_real wave = TWO_PI / bump->length;
+        if (is_on_bump(bump, x, y))
+            out[0] += GIC_R(0.5) * bump->height * wave * wave * MATH(cos)(wave * (x - bump->x));
     }
 }
 
@@ -82,19 +127,21 @@ int gic_road_bumps_setup(gic_road_bumps *road)
 
 /* ---- tables --------------------------------------------------------------------------------------------- */
 
-void gic_table_height(const gic_road *road, int32_t lane, gic_real time, gic_real x, gic_real y, gic_real out[3])
+/* The piece of a table that x is in, a cubic h0 + s (d0 + s (c + s b)) with s from 0 to 1; width 0: level outside. */
+typedef struct piece {
+    gic_real width, s, h0, d0, c, b;
+} piece;
+
+static piece piece_at(const gic_road_table *table, gic_real x, gic_real y)
 {
-    const gic_road_table *table = (const gic_road_table *)(const void *)road;
     const gic_real *at = table->x;
     const gic_real *height = y > GIC_ROAD_EDGE ? table->left : table->right;
     const gic_real *slope = y > GIC_ROAD_EDGE ? table->slope_left : table->slope_right;
     int32_t low = 0, high = table->count - 1;
-    (void)lane;
-    (void)time;
-    out[1] = out[2] = GIC_R(0.0);
+    piece p = {GIC_R(0.0), GIC_R(0.0), GIC_R(0.0), GIC_R(0.0), GIC_R(0.0), GIC_R(0.0)};
     if (x <= at[low] || x >= at[high]) {
-        out[0] = height[x <= at[low] ? low : high];
-        return;
+        p.h0 = height[x <= at[low] ? low : high];
+        return p;
     }
     /* the piece of x if points are evenly spaced; x may be no number */
     const gic_real place = (x - at[low]) / (at[high] - at[low]) * (gic_real)high;
@@ -114,13 +161,38 @@ void gic_table_height(const gic_road *road, int32_t lane, gic_real time, gic_rea
         else
             low = middle;
     }
-    /* cubic Hermite: h0 + s (d0 + s (c + s b)), s from 0 to 1 */
-    const gic_real width = at[high] - at[low], s = (x - at[low]) / width;
     const gic_real rise = height[high] - height[low];
-    const gic_real d0 = width * slope[low], d1 = width * slope[high];
-    const gic_real c = GIC_R(3.0) * rise - GIC_R(2.0) * d0 - d1, b = d0 + d1 - GIC_R(2.0) * rise;
-    out[0] = height[low] + s * (d0 + s * (c + s * b));
-    out[1] = (d0 + s * (GIC_R(2.0) * c + s * GIC_R(3.0) * b)) / width;
+    p.width = at[high] - at[low];
+    p.s = (x - at[low]) / p.width;
+    p.h0 = height[low];
+    p.d0 = p.width * slope[low];
+    const gic_real d1 = p.width * slope[high];
+    p.c = GIC_R(3.0) * rise - GIC_R(2.0) * p.d0 - d1;
+    p.b = p.d0 + d1 - GIC_R(2.0) * rise;
+    return p;
+}
+
+void gic_table_height(const gic_road *road, int32_t lane, gic_real time, gic_real x, gic_real y, gic_real out[3])
+{
+    const piece p = piece_at((const gic_road_table *)(const void *)road, x, y);
+    (void)lane;
+    (void)time;
+    out[0] = p.h0;
+    out[1] = out[2] = GIC_R(0.0);
+    if (p.width > GIC_R(0.0)) {
+        out[0] = p.h0 + p.s * (p.d0 + p.s * (p.c + p.s * p.b));
+        out[1] = (p.d0 + p.s * (GIC_R(2.0) * p.c + p.s * GIC_R(3.0) * p.b)) / p.width;
+    }
+}
+
+void gic_table_bend(const gic_road *road, int32_t lane, gic_real time, gic_real x, gic_real y, gic_real out[3])
+{
+    const piece p = piece_at((const gic_road_table *)(const void *)road, x, y);
+    (void)lane;
+    (void)time;
+    out[0] = out[1] = out[2] = GIC_R(0.0);
+    if (p.width > GIC_R(0.0))
+        out[0] = (GIC_R(2.0) * p.c + p.s * GIC_R(6.0) * p.b) / (p.width * p.width);
 }
 
 /* Slopes that keep every piece monotone: zero at extrema and plateaus, else the weighted harmonic mean of the chords
@@ -156,10 +228,11 @@ int gic_road_table_setup(gic_road_table *road)
 
 /* ---- height fields -------------------------------------------------------------------------------------- */
 
-/* The four nodes that a place on an axis depends on: indices, weights, derivatives of the weights by the place. */
+/* The four nodes that a place on an axis depends on: indices, weights, their first and second derivatives by the place.
+ */
 typedef struct support {
     int32_t node[4];
-    gic_real weight[4], rate[4];
+    gic_real weight[4], rate[4], bend[4];
 } support;
 
 /* Cubic Hermite between two nodes, whose slopes are half the difference of their neighbours; level at the ends. */
@@ -178,6 +251,11 @@ static support support_at(gic_real place, gic_real first, gic_real spacing, int3
     const gic_real slope0_rate = before ? GIC_R(0.5) * u * (u - GIC_R(2.0) * t) * by : GIC_R(0.0);
     const gic_real slope1_rate = after ? GIC_R(0.5) * t * (t - GIC_R(2.0) * u) * by : GIC_R(0.0);
     const gic_real rise = t * t * (GIC_R(3.0) - GIC_R(2.0) * t), rise_rate = GIC_R(6.0) * t * u * by;
+    /* none beyond the edges */
+    const gic_real twice = place >= first && along < (gic_real)last ? by * by : GIC_R(0.0);
+    const gic_real slope0_bend = before ? (GIC_R(3.0) * t - GIC_R(2.0)) * twice : GIC_R(0.0);
+    const gic_real slope1_bend = after ? (GIC_R(3.0) * t - GIC_R(1.0)) * twice : GIC_R(0.0);
+    const gic_real rise_bend = GIC_R(6.0) * (u - t) * twice;
     s.node[0] = before ? cell - 1 : cell;
     s.node[1] = cell;
     s.node[2] = cell + 1;
@@ -190,6 +268,10 @@ static support support_at(gic_real place, gic_real first, gic_real spacing, int3
     s.rate[1] = -rise_rate - slope1_rate;
     s.rate[2] = rise_rate + slope0_rate;
     s.rate[3] = slope1_rate;
+    s.bend[0] = -slope0_bend;
+    s.bend[1] = -rise_bend - slope1_bend;
+    s.bend[2] = rise_bend + slope0_bend;
+    s.bend[3] = slope1_bend;
     return s;
 }
 
@@ -215,6 +297,30 @@ void gic_grid_height(const gic_road *road, int32_t lane, gic_real time, gic_real
         out[0] += across.weight[j] * height;
         out[1] += across.weight[j] * slope;
         out[2] += across.rate[j] * height;
+    }
+}
+
+void gic_grid_bend(const gic_road *road, int32_t lane, gic_real time, gic_real x, gic_real y, gic_real out[3])
+{
+    const gic_road_grid *grid = (const gic_road_grid *)(const void *)road;
+    (void)lane;
+    (void)time;
+    out[0] = out[1] = out[2] = GIC_R(0.0);
+    if (!gic_finite(&x, 1) || !gic_finite(&y, 1))
+        return;
+    const support along = support_at(x, grid->x0, grid->dx, grid->nx);
+    const support across = support_at(y, grid->y0, grid->dy, grid->ny);
+    for (int j = 0; j < 4; ++j) {
+        const gic_real *row = grid->height + (size_t)across.node[j] * (size_t)grid->nx;
+        gic_real height = GIC_R(0.0), slope = GIC_R(0.0), bend = GIC_R(0.0);
+        for (int i = 0; i < 4; ++i) {
+            height += along.weight[i] * row[along.node[i]];
+            slope += along.rate[i] * row[along.node[i]];
+            bend += along.bend[i] * row[along.node[i]];
+        }
+        out[0] += across.weight[j] * bend;
+        out[1] += across.rate[j] * slope;
+        out[2] += across.bend[j] * height;
     }
 }
 
@@ -287,6 +393,8 @@ int gic_road_iso8608_setup(gic_road_grid *road, const gic_iso8608 *profile, gic_
     }
     road->head.height = gic_grid_height;
     road->head.friction = NULL;
+    road->head.bend = gic_grid_bend;
+    road->head.friction_slope = NULL;
     road->x0 = profile->start;
     road->dx = spacing;
     road->nx = count;
@@ -311,12 +419,29 @@ void gic_sum_height(const gic_road *road, int32_t lane, gic_real time, gic_real 
     }
 }
 
+void gic_sum_bend(const gic_road *road, int32_t lane, gic_real time, gic_real x, gic_real y, gic_real out[3])
+{
+    const gic_road_sum *sum = (const gic_road_sum *)(const void *)road;
+    out[0] = out[1] = out[2] = GIC_R(0.0);
+    for (int32_t i = 0; i < sum->count; ++i) {
+        gic_real part[3];
+        gic_road_bend(sum->part[i], lane, time, x, y, part);
+        for (int k = 0; k < 3; ++k)
+            out[k] += part[k];
+    }
+}
+
 void gic_patched_height(const gic_road *road, int32_t lane, gic_real time, gic_real x, gic_real y, gic_real out[3])
 {
     const gic_road *under = ((const gic_road_patched *)(const void *)road)->under;
     out[0] = out[1] = out[2] = GIC_R(0.0);
     if (under)
         under->height(under, lane, time, x, y, out);
+}
+
+void gic_patched_bend(const gic_road *road, int32_t lane, gic_real time, gic_real x, gic_real y, gic_real out[3])
+{
+    gic_road_bend(((const gic_road_patched *)(const void *)road)->under, lane, time, x, y, out);
 }
 
 /* 1 inside [low, high], 0 outside, smooth over `fade` around the ends. */
@@ -337,4 +462,35 @@ gic_real gic_patched_friction(const gic_road *road, int32_t lane, gic_real time,
                  inside(y, patch->y_low, patch->y_high, patch->fade) * (patch->value - value);
     }
     return value;
+}
+
+/* Derivatives of smooth() and inside(). */
+static gic_real smooth_slope(gic_real t)
+{
+    return t > GIC_R(0.0) && t < GIC_R(1.0) ? GIC_R(6.0) * t * (GIC_R(1.0) - t) : GIC_R(0.0);
+}
+
+static gic_real inside_slope(gic_real place, gic_real low, gic_real high, gic_real fade)
+{
+    const gic_real in = (place - low) / fade + GIC_R(0.5), off = (high - place) / fade + GIC_R(0.5);
+    return (smooth_slope(in) * smooth(off) - smooth(in) * smooth_slope(off)) / fade;
+}
+
+void gic_patched_friction_slope(const gic_road *road, int32_t lane, gic_real time, gic_real x, gic_real y,
+                                gic_real out[2])
+{
+    const gic_road_patched *patched = (const gic_road_patched *)(const void *)road;
+    gic_real value = patched->value;
+    (void)lane;
+    (void)time;
+    out[0] = out[1] = GIC_R(0.0);
+    for (int32_t i = 0; i < patched->count; ++i) {
+        const gic_friction_patch *patch = &patched->patch[i];
+        const gic_real along = inside(x, patch->x_low, patch->x_high, patch->fade);
+        const gic_real across = inside(y, patch->y_low, patch->y_high, patch->fade);
+        const gic_real left = patch->value - value;
+        out[0] += inside_slope(x, patch->x_low, patch->x_high, patch->fade) * across * left - along * across * out[0];
+        out[1] += along * inside_slope(y, patch->y_low, patch->y_high, patch->fade) * left - along * across * out[1];
+        value += along * across * left;
+    }
 }

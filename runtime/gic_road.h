@@ -4,12 +4,14 @@
  * allocation, no globals, arrays belong to the caller. Generated code knows only the head, struct gic_road: whoever has
  * a road of his own needs neither of these two files.
  *
- *     static const gic_road_plane hill = {{gic_plane_height, NULL}, 0, GIC_R(0.05), 0};
+ *     static const gic_road_plane hill = {{gic_plane_height, NULL, gic_plane_bend, NULL},
+ *         0, GIC_R(0.05), 0};
  *     car.head.road = &hill.head;
  *
  * Heights in metres over positions in the world, slopes without unit. Slopes are continuous, but for bumps and tables
  * at the side edges of their tracks, where the data have a step. A position that is not finite gives a height that is
  * not, or a defined one; it never makes a road read beyond its arrays. models/SCENE.md, section 3, has all formulas.
+ * `bend` functions are exact but for rounding.
  */
 #ifndef GIC_ROAD_H
 #define GIC_ROAD_H
@@ -30,6 +32,8 @@ typedef struct gic_road_plane {
 
 #define gic_plane_height GIC_NAME(gic_plane_height)
 void gic_plane_height(const gic_road *road, int32_t lane, gic_real time, gic_real x, gic_real y, gic_real out[3]);
+#define gic_plane_bend GIC_NAME(gic_plane_bend)
+void gic_plane_bend(const gic_road *road, int32_t lane, gic_real time, gic_real x, gic_real y, gic_real out[3]);
 
 /* h = amplitude sin(2 pi (x - x0) / wavelength + phase_per_y y). */
 typedef struct gic_road_sine {
@@ -39,6 +43,8 @@ typedef struct gic_road_sine {
 
 #define gic_sine_height GIC_NAME(gic_sine_height)
 void gic_sine_height(const gic_road *road, int32_t lane, gic_real time, gic_real x, gic_real y, gic_real out[3]);
+#define gic_sine_bend GIC_NAME(gic_sine_bend)
+void gic_sine_bend(const gic_road *road, int32_t lane, gic_real time, gic_real x, gic_real y, gic_real out[3]);
 
 /* Within this distance, m, a place counts as on the edge between tracks: a wheel at y = 0 but for rounding is on the
  * right. */
@@ -64,6 +70,8 @@ typedef struct gic_road_bumps {
 
 #define gic_bumps_height GIC_NAME(gic_bumps_height)
 void gic_bumps_height(const gic_road *road, int32_t lane, gic_real time, gic_real x, gic_real y, gic_real out[3]);
+#define gic_bumps_bend GIC_NAME(gic_bumps_bend)
+void gic_bumps_bend(const gic_road *road, int32_t lane, gic_real time, gic_real x, gic_real y, gic_real out[3]);
 /* GIC_ERROR_ARGUMENT if x decreases, a length is not positive or a number is not finite. */
 #define gic_road_bumps_setup GIC_NAME(gic_road_bumps_setup)
 int gic_road_bumps_setup(gic_road_bumps *road);
@@ -82,6 +90,8 @@ typedef struct gic_road_table {
 
 #define gic_table_height GIC_NAME(gic_table_height)
 void gic_table_height(const gic_road *road, int32_t lane, gic_real time, gic_real x, gic_real y, gic_real out[3]);
+#define gic_table_bend GIC_NAME(gic_table_bend)
+void gic_table_bend(const gic_road *road, int32_t lane, gic_real time, gic_real x, gic_real y, gic_real out[3]);
 /* Set the slopes; GIC_ERROR_ARGUMENT if count < 2, x does not increase or a number is not finite. */
 #define gic_road_table_setup GIC_NAME(gic_road_table_setup)
 int gic_road_table_setup(gic_road_table *road);
@@ -97,6 +107,8 @@ typedef struct gic_road_grid {
 
 #define gic_grid_height GIC_NAME(gic_grid_height)
 void gic_grid_height(const gic_road *road, int32_t lane, gic_real time, gic_real x, gic_real y, gic_real out[3]);
+#define gic_grid_bend GIC_NAME(gic_grid_bend)
+void gic_grid_bend(const gic_road *road, int32_t lane, gic_real time, gic_real x, gic_real y, gic_real out[3]);
 /* GIC_ERROR_ARGUMENT if there are fewer than 2 x 2 nodes, a spacing is not positive or a number is not finite. */
 #define gic_road_grid_check GIC_NAME(gic_road_grid_check)
 int gic_road_grid_check(const gic_road_grid *road);
@@ -130,6 +142,8 @@ typedef struct gic_road_sum {
 
 #define gic_sum_height GIC_NAME(gic_sum_height)
 void gic_sum_height(const gic_road *road, int32_t lane, gic_real time, gic_real x, gic_real y, gic_real out[3]);
+#define gic_sum_bend GIC_NAME(gic_sum_bend)
+void gic_sum_bend(const gic_road *road, int32_t lane, gic_real time, gic_real x, gic_real y, gic_real out[3]);
 
 /* A rectangle of other friction, `value` inside. Its edges are `fade` wide, half of it on either side, and smooth.
  * 0 < fade <= the rectangle's sides. */
@@ -149,8 +163,13 @@ typedef struct gic_road_patched {
 
 #define gic_patched_height GIC_NAME(gic_patched_height)
 void gic_patched_height(const gic_road *road, int32_t lane, gic_real time, gic_real x, gic_real y, gic_real out[3]);
+#define gic_patched_bend GIC_NAME(gic_patched_bend)
+void gic_patched_bend(const gic_road *road, int32_t lane, gic_real time, gic_real x, gic_real y, gic_real out[3]);
 #define gic_patched_friction GIC_NAME(gic_patched_friction)
 gic_real gic_patched_friction(const gic_road *road, int32_t lane, gic_real time, gic_real x, gic_real y);
+#define gic_patched_friction_slope GIC_NAME(gic_patched_friction_slope)
+void gic_patched_friction_slope(const gic_road *road, int32_t lane, gic_real time, gic_real x, gic_real y,
+                                gic_real out[2]);
 
 #ifdef __cplusplus
 }

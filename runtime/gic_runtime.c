@@ -2129,6 +2129,62 @@ int gic_rates_match(const gic_model *model, const gic_real *state, const gic_rea
     return wrong <= rounding * size;
 }
 
+/* ---- roads ---------------------------------------------------------------------------------------------- */
+
+#ifdef GIC_FLOAT
+#define ROAD_REACH GIC_R(1e-2)
+#else
+#define ROAD_REACH GIC_R(1e-3)
+#endif
+
+/* From a number at -2, -1, 1 and 2 reaches. */
+static gic_real central(const gic_real side[4])
+{
+    return (side[0] - side[3] + GIC_R(8.0) * (side[2] - side[1])) / (GIC_R(12.0) * ROAD_REACH);
+}
+
+static gic_real reach_of(int32_t i)
+{
+    return (gic_real)(i < 2 ? i - 2 : i - 1) * ROAD_REACH;
+}
+
+void gic_road_bend(const gic_road *road, int32_t lane, gic_real time, gic_real x, gic_real y, gic_real out[3])
+{
+    out[0] = out[1] = out[2] = GIC_R(0.0);
+    if (road && road->bend) {
+        road->bend(road, lane, time, x, y, out);
+    } else if (road) {
+        gic_real along[2][4], across[4];
+        for (int32_t i = 0; i < 4; ++i) {
+            gic_real beside[3];
+            road->height(road, lane, time, x + reach_of(i), y, beside);
+            along[0][i] = beside[1];
+            along[1][i] = beside[2];
+            road->height(road, lane, time, x, y + reach_of(i), beside);
+            across[i] = beside[2];
+        }
+        out[0] = central(along[0]);
+        out[1] = central(along[1]);
+        out[2] = central(across);
+    }
+}
+
+void gic_road_friction_slope(const gic_road *road, int32_t lane, gic_real time, gic_real x, gic_real y, gic_real out[2])
+{
+    out[0] = out[1] = GIC_R(0.0);
+    if (road && road->friction && road->friction_slope) {
+        road->friction_slope(road, lane, time, x, y, out);
+    } else if (road && road->friction) {
+        gic_real along[4], across[4];
+        for (int32_t i = 0; i < 4; ++i) {
+            along[i] = road->friction(road, lane, time, x + reach_of(i), y);
+            across[i] = road->friction(road, lane, time, x, y + reach_of(i));
+        }
+        out[0] = central(along);
+        out[1] = central(across);
+    }
+}
+
 /* ---- tables and inputs ---------------------------------------------------------------------------------- */
 
 gic_real gic_table_value(const gic_table *table, gic_real x)

@@ -26,7 +26,7 @@ extern "C" {
 #endif
 
 /* Increased when generated code and runtime of different versions no longer fit together. */
-#define GIC_ABI_VERSION 11
+#define GIC_ABI_VERSION 12
 
 /* The number type of everything: compile runtime and generated code with GIC_FLOAT for single precision. The
  * names of the runtime's functions differ between the two, so that mixing them fails at link time. Who defines GIC_NAME
@@ -83,11 +83,26 @@ const char *gic_status_text(int status);
 
 /* A road z = h(x, y), world frame, metres: one of gic_road.h or your own. `height` sets out[0] = h, out[1] = dh/dx,
  * out[2] = dh/dy. `friction`: at a place, relative to the road that the tires were measured on, above 0; NULL: 1
- * everywhere. `lane` is the instance's lane index. Data of a road follow this head in the user's own structure. */
+ * everywhere. `lane` is the instance's lane index. Data of a road follow this head in the user's own structure.
+ * For derivatives alone, and NULL where they are not known: `bend` sets the second derivatives h_xx, h_xy, h_yy, 1/m,
+ * `friction_slope` those of friction by x and y, 1/m; where they jump, those of the side on which `height` takes the
+ * place to be. */
 typedef struct gic_road {
     void (*height)(const struct gic_road *road, int32_t lane, gic_real time, gic_real x, gic_real y, gic_real out[3]);
     gic_real (*friction)(const struct gic_road *road, int32_t lane, gic_real time, gic_real x, gic_real y);
+    void (*bend)(const struct gic_road *road, int32_t lane, gic_real time, gic_real x, gic_real y, gic_real out[3]);
+    void (*friction_slope)(const struct gic_road *road, int32_t lane, gic_real time, gic_real x, gic_real y,
+                           gic_real out[2]);
 } gic_road;
+
+/* What `bend` and `friction_slope` of a road tell or, where they are NULL, central differences of fourth order along x
+ * and y, over 1 mm (1 cm with GIC_FLOAT): some 1e-12 off for waves of a metre and more, and between both sides where
+ * slopes bend. A road that is NULL has none. */
+#define gic_road_bend GIC_NAME(gic_road_bend)
+void gic_road_bend(const gic_road *road, int32_t lane, gic_real time, gic_real x, gic_real y, gic_real out[3]);
+#define gic_road_friction_slope GIC_NAME(gic_road_friction_slope)
+void gic_road_friction_slope(const gic_road *road, int32_t lane, gic_real time, gic_real x, gic_real y,
+                             gic_real out[2]);
 
 /* Newton starts of an instance: the last good one, one that is kept for the step under way, and two for a change
  * followed in pieces. */

@@ -72,35 +72,54 @@ double tape_table_slope(const TapeWorld *world, const gic_table *table, double x
            t * (3 * t - 2) * table->slope[high];
 }
 
-/* How height and slopes of the road change when the point moves by dx, dy. That of the height is exact; roads tell no
- * second derivatives, so that of the slopes is a central difference of fourth order with a step of 1 mm, whose error is
- * some 1e-12 of the slope for waves of a metre and more. */
+/* How slopes change by 1 m along a direction where kinks are met, the mean of both sides: a central difference of
+ * fourth order with a step of 1 mm. False where the road has no finite height. */
+static bool slopes_beside(const TapeWorld *world, double x, double y, double dx, double dy, double out[3])
+{
+    const double step = 1e-3;
+    double side[4][3];
+    bool good = true;
+    for (int i = 0; i < 4; ++i) {
+        const double reach = (i < 2 ? i - 2 : i - 1) * step;
+        good = tape_road(world, x + reach * dx, y + reach * dy, side[i]) && good;
+    }
+    for (int k = 1; k < 3; ++k)
+        out[k] = (side[0][k] - side[3][k] + 8 * (side[2][k] - side[1][k])) / (12 * step);
+    return good;
+}
+
 bool tape_road_change(const TapeWorld *world, double x, double y, double dx, double dy, const double road[3],
                       double out[3])
 {
-    const double step = 1e-3, length = hypot(dx, dy);
-    double side[4][3];
-    bool good = true;
+    const double length = hypot(dx, dy);
+    double bend[3];
     out[0] = chain(road[1], dx) + chain(road[2], dy);
     out[1] = out[2] = 0;
     if (!world->road || length == 0)
         return true;
-    for (int i = 0; i < 4; ++i) {
-        const double reach = (i < 2 ? i - 2 : i - 1) * step / length;
-        good = tape_road(world, x + reach * dx, y + reach * dy, side[i]) && good;
+    if (!(world->near > 0)) {
+        gic_road_bend(world->road, world->lane, world->time, x, y, bend);
+        out[1] = bend[0] * dx + bend[1] * dy;
+        out[2] = bend[1] * dx + bend[2] * dy;
+        return gic_finite(bend, 3);
     }
-    for (int k = 1; k < 3; ++k)
-        out[k] = length / (12 * step) * (side[0][k] - side[3][k] + 8 * (side[2][k] - side[1][k]));
+    const bool good = slopes_beside(world, x, y, dx / length, dy / length, out);
+    out[1] *= length;
+    out[2] *= length;
     return good;
 }
 
-/* How friction changes on the way: by the same difference. */
+/* In the same way. */
 double tape_friction_change(const TapeWorld *world, double x, double y, double dx, double dy)
 {
     const double step = 1e-3, length = hypot(dx, dy);
-    double side[4];
+    double side[4], slope[2];
     if (!world->road || length == 0)
         return 0;
+    if (!(world->near > 0)) {
+        gic_road_friction_slope(world->road, world->lane, world->time, x, y, slope);
+        return slope[0] * dx + slope[1] * dy;
+    }
     for (int i = 0; i < 4; ++i) {
         const double reach = (i < 2 ? i - 2 : i - 1) * step / length;
         side[i] = tape_friction(world, x + reach * dx, y + reach * dy);

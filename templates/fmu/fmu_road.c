@@ -47,6 +47,20 @@ static gic_real plane_friction(const gic_road *road, int32_t lane, gic_real time
     return nearest((const fmu_ground *)(const void *)road, time, x, y, from)[FMU_FRICTION];
 }
 
+/* A wheel stays on its plane: no bend, no other friction beside it. */
+static void plane_bend(const gic_road *road, int32_t lane, gic_real time, gic_real x, gic_real y, gic_real out[3])
+{
+    (void)road, (void)lane, (void)time, (void)x, (void)y;
+    out[0] = out[1] = out[2] = GIC_R(0.0);
+}
+
+static void plane_friction_slope(const gic_road *road, int32_t lane, gic_real time, gic_real x, gic_real y,
+                                 gic_real out[2])
+{
+    (void)road, (void)lane, (void)time, (void)x, (void)y;
+    out[0] = out[1] = GIC_R(0.0);
+}
+
 void fmu_ground_reset(fmu_ground *ground)
 {
     int32_t w;
@@ -59,6 +73,8 @@ const gic_road *fmu_ground_adopt(fmu_ground *ground)
 {
     ground->head.height = plane_height;
     ground->head.friction = plane_friction;
+    ground->head.bend = plane_bend;
+    ground->head.friction_slope = plane_friction_slope;
     return ground->given ? &ground->head : NULL;
 }
 

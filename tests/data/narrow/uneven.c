@@ -34,7 +34,8 @@ static void tilted(const gic_road *road, int32_t lane, gic_real time, gic_real x
     out[0] += GIC_R(0.01) * y, out[2] = GIC_R(0.01);
 }
 
-static const gic_road even_road = {even, NULL}, stepped_road = {stepped, NULL}, tilted_road = {tilted, NULL};
+static const gic_road even_road = {even, NULL, NULL, NULL}, stepped_road = {stepped, NULL, NULL, NULL},
+                      tilted_road = {tilted, NULL, NULL, NULL};
 
 static void refuses(hmmwv *vehicle, const hmmwv *good, const char *named)
 {

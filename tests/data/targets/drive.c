@@ -35,7 +35,12 @@ int main(void)
     static const gic_iso8608 profile = {'D', 3, GIC_R(2.0), GIC_R(16.0), GIC_R(1.5), GIC_R(2.0)};
     static const gic_friction_patch ice = {GIC_R(4.0), GIC_R(8.0), GIC_R(-1.0), GIC_R(1.0), GIC_R(0.1), GIC_R(2.0)};
     static gic_road_grid rough;
-    static gic_road_patched road = {{gic_patched_height, gic_patched_friction}, &rough.head, GIC_R(0.9), &ice, 1};
+    static gic_road_patched road = {
+        {gic_patched_height, gic_patched_friction, gic_patched_bend, gic_patched_friction_slope},
+        &rough.head,
+        GIC_R(0.9),
+        &ice,
+        1};
     int i, step, status = gic_road_iso8608_setup(&rough, &profile, height, POINTS);
     if (status == GIC_OK)
         status = hmmwv_setup(&car);
