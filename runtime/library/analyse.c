@@ -164,7 +164,6 @@ static void find_gradient(void *context)
     const Scene *scene;
     const Model *model = read_scene(work, &scene);
     const Scalar scalar = scalar_read(pool, model, scene, pool_print(pool, "%s", work->formula));
-    scene = equilibrium_start(pool, model, scene, solve);
     const Gradient *gradient = gradient_find(pool, &scalar, scene, solve, work->word, work->words);
     gic_signal *row = pool_alloc(pool, sizeof *row * (size_t)(gradient->variables + 1));
     double *value = pool_alloc(pool, sizeof *value * (size_t)(gradient->variables + 1));

@@ -403,16 +403,11 @@ int adjoint_find(TangentRun *run, AdjointWeight *weight, const void *context, do
         return status;
     settle_back(&back, trail_event(run->trail, 0));
     *value = back.value;
-    memcpy(tape_array(run->self, run->code->state_offset), trail_event(run->trail, 1)->number,
-           (size_t)run->states * sizeof(double));
     for (int k = 0; k < run->variables; ++k) {
         const RunVariable *v = &run->variable[k];
         derivative[k] = v->kind == BY_PARAMETER ? back.parameter[v->index] : back.derivative[k];
-        if (v->kind != BY_INITIAL)
-            continue;
-        linear_direction(run->linear, run->self, LINEAR_MOTION, v->index);
         for (int i = 0; i < run->states; ++i)
-            derivative[k] += back.state[i] * run->linear->along.y[i];
+            derivative[k] += back.state[i] * run->begins[k * run->states + i];
     }
     return GIC_OK;
 }

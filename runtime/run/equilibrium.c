@@ -15,6 +15,7 @@
 #include "model/model.h"
 #include "model/tunable.h"
 #include "run/engines.h"
+#include "run/equilibrium_private.h"
 #include "run/linearize.h"
 #include "run/run.h"
 #include "scene/scene.h"
@@ -26,19 +27,15 @@
 
 #include <gsl/gsl_linalg.h>
 
-const double equilibrium_limit = 1e-9;
+const double equilibrium_limit = 1e-9, equilibrium_rank = 1e-9;
 const double equilibrium_tipped = 1.0471975511965976; /* 60 degrees, as for runs (outcome_look()) */
 static const double slowest = 1e-9;                   /* m/s, rad/s: below this speed it stands still */
 
 enum { MOST_STEPS = 500 };
 
 static const double longest = 1e4, shortest = 1e-7, first = 0.02; /* h, s */
-static const double near = 1e-3;       /* size of a piece: the direction of so small a step need not be checked */
-static const double rank_limit = 1e-9; /* singular values below this, relative to the largest, count as zero: nothing
-                                        * changes */
+static const double near = 1e-3; /* size of a piece: the direction of so small a step need not be checked */
 
-/* Unknowns are the places, then the fast states but clocks; equations their accelerations, then rates: equation i is
- * row places + i of A. */
 typedef struct Search {
     Pool *pool;
     Equilibrium *found;
@@ -51,7 +48,7 @@ typedef struct Search {
     const char *limit; /* why the trials since the last good step failed; NULL: none did */
 } Search;
 
-static int column_of(const Linear *linear, int unknown)
+int equilibrium_column(const Linear *linear, int unknown)
 {
     return unknown < linear->places ? unknown : unknown + linear->places;
 }
@@ -80,8 +77,8 @@ static double step_size(const Search *s, const double *step, int count)
     const Linear *linear = s->found->linear;
     double size = 0;
     for (int i = 0; i < count; ++i)
-        size =
-            fmax(size, fabs(step[i]) / (i < linear->places ? linear->piece[i] : linear->reach[column_of(linear, i)]));
+        size = fmax(size, fabs(step[i]) /
+                              (i < linear->places ? linear->piece[i] : linear->reach[equilibrium_column(linear, i)]));
     return size;
 }
 
@@ -92,7 +89,7 @@ static void decompose(const Search *s, gsl_matrix *U, gsl_matrix *V, gsl_vector 
     const int n = s->unknowns;
     for (int i = 0; i < n; ++i)
         for (int j = 0; j < n; ++j) {
-            const int column = column_of(linear, j);
+            const int column = equilibrium_column(linear, j);
             gsl_matrix_set(U, (size_t)i, (size_t)j,
                            s->found->A[(linear->places + i) * linear->count + column] * linear->reach[column]);
         }
@@ -102,7 +99,7 @@ static void decompose(const Search *s, gsl_matrix *U, gsl_matrix *V, gsl_vector 
 /* True for a direction in which nothing changes; steps have no component there. */
 static bool is_flat(const gsl_vector *S, size_t k)
 {
-    return !(gsl_vector_get(S, k) > rank_limit * gsl_vector_get(S, 0));
+    return !(gsl_vector_get(S, k) > equilibrium_rank * gsl_vector_get(S, 0));
 }
 
 /* step: Newton's of least norm, from the decomposed equations, for f. */
@@ -117,7 +114,7 @@ static void solve_decomposed(const Search *s, const gsl_matrix *U, const gsl_mat
         for (size_t i = 0; i < n && !is_flat(S, k); ++i)
             part -= gsl_matrix_get(U, i, k) * f[linear->places + (int)i] / gsl_vector_get(S, k);
         for (size_t j = 0; j < n; ++j)
-            step[j] += part * gsl_matrix_get(V, j, k) * linear->reach[column_of(linear, (int)j)];
+            step[j] += part * gsl_matrix_get(V, j, k) * linear->reach[equilibrium_column(linear, (int)j)];
     }
 }
 
@@ -158,7 +155,7 @@ static void relaxation_step(Search *s)
         const double *row = s->found->A + (places + i) * linear->count;
         s->step[i] = s->found->f[places + i];
         for (int j = 0; j < n; ++j)
-            M[n * i + j] = i >= places && j < places ? -followed(s, i, j) : -row[column_of(linear, j)];
+            M[n * i + j] = i >= places && j < places ? -followed(s, i, j) : -row[equilibrium_column(linear, j)];
         M[n * i + i] += i < places ? 1 / (s->h * s->h) : 1 / s->h;
     }
     if (!linear_solve_numeric(n, M, s->step))
@@ -174,7 +171,7 @@ static double pushed(const Search *s, int i)
     const int row = linear->places + i;
     double a = s->found->f[row];
     for (int j = linear->places; j < s->unknowns; ++j)
-        a += s->found->A[row * linear->count + column_of(linear, j)] * s->step[j];
+        a += s->found->A[row * linear->count + equilibrium_column(linear, j)] * s->step[j];
     return a;
 }
 
@@ -203,15 +200,20 @@ static bool goes_with_forces(Search *s, double size)
     return work > 0;
 }
 
+bool equilibrium_is_held(const Equilibrium *found, int i)
+{
+    const int own = 2 * found->linear->places + found->linear->of_wheels;
+    return i < own || i >= own + found->model->states;
+}
+
 /* linearize(); slips of locked wheels can change, and the rates of their spins are ignored. */
 static int look(const Search *s, Instance *self, double *f, double *A)
 {
     const Linear *linear = s->found->linear;
     const int count = linear->count;
     const int status = linearize(linear, self, f, A);
-    const int own = 2 * linear->places + linear->of_wheels; /* the model's own states are not locked */
     for (int i = 2 * linear->places; i < count && s->found->locked; ++i) {
-        if (i >= own && i < own + s->found->model->states)
+        if (!equilibrium_is_held(s->found, i))
             continue;
         f[i] = 0;
         memset(A + i * count, 0, (size_t)count * sizeof *A);
@@ -227,7 +229,7 @@ static bool try_step(Search *s)
     const Linear *linear = s->found->linear;
     memset(s->move, 0, (size_t)linear->count * sizeof *s->move);
     for (int i = 0; i < s->unknowns; ++i)
-        s->move[column_of(linear, i)] = s->step[i];
+        s->move[equilibrium_column(linear, i)] = s->step[i];
     memcpy(s->trial, s->found->self, linear->engine->code.size);
     linear_move(linear, s->trial, s->move);
     const int status = look(s, s->trial, s->f, s->A);
@@ -496,9 +498,7 @@ static void stop_wheels(const Search *s)
         stop(fast + found->model->powertrain->fast + POWERTRAIN_SPEED);
 }
 
-/* Exchanges the gears of the vehicle with those in `other`. With locked wheels the gear is neutral: drive_body would
- * take a torque that no wheel passes on to the road, for the wheels' own equations are left out. */
-static void exchange_gears(const Equilibrium *found, int32_t other[POWERTRAIN_DISCRETE])
+void equilibrium_exchange_gears(const Equilibrium *found, int32_t other[POWERTRAIN_DISCRETE])
 {
     const gic_model *code = &found->linear->engine->code;
     int32_t *gear = (int32_t *)(void *)((char *)found->self + code->discrete_offset) + code->free_base;
@@ -536,7 +536,7 @@ static const Equilibrium *find(Pool *pool, const Model *model, const Scene *scen
     if (status == GIC_OK)
         status = lift_out(found);
     if (status == GIC_OK && locked)
-        exchange_gears(found, gears);
+        equilibrium_exchange_gears(found, gears);
     if (status == GIC_OK)
         status = look(&s, found->self, found->f, found->A);
     if (status != GIC_OK)
@@ -560,7 +560,7 @@ static const Equilibrium *find(Pool *pool, const Model *model, const Scene *scen
                   instance_status(pool, found->engine->code, &found->self->head, status));
     found->residual = fabs(found->f[largest(&s, found->f)]);
     if (locked)
-        exchange_gears(found, gears);
+        equilibrium_exchange_gears(found, gears);
     return found;
 }
 

@@ -142,9 +142,9 @@ static const char **read_words(Pool *pool, const char *const *word, int count, d
     return name;
 }
 
-/* The scene with the values of words, and the variables with them. */
+/* The scene with the values of words, and the variables with them. initial: with values at time 0, too. */
 static const Scene *with_values(Pool *pool, const Model *model, const Scene *scene, Gradient *gradient,
-                                const char *const *name, const double *value, int count)
+                                const char *const *name, const double *value, int count, bool initial)
 {
     Scene *copy = scene_with_numbers(pool, model, scene);
     RunVariable *variable = pool_alloc(pool, ((size_t)gradient->variables + 1) * sizeof *variable);
@@ -152,7 +152,7 @@ static const Scene *with_values(Pool *pool, const Model *model, const Scene *sce
     gradient->variable = variable;
     for (int i = 0; i < count; ++i)
         for (int k = 0; k < gradient->variables && !isnan(value[i]); ++k)
-            if (!strcmp(name[i], variable[k].name)) {
+            if (!strcmp(name[i], variable[k].name) && (initial || variable[k].kind != BY_INITIAL)) {
                 number_places_check(model, copy, &variable[k], 1, "--gradient");
                 *number_place(model, copy, &variable[k]) = variable[k].value = value[i];
             }
@@ -170,6 +170,8 @@ const Gradient *gradient_find(Pool *pool, const Scalar *scalar, const Scene *sce
     const Model *model = scalar->model;
     double *value = pool_alloc(pool, ((size_t)count + 1) * sizeof *value);
     const char **name = read_words(pool, wanted, count, value);
+    const Scene *given = scene;
+    scene = equilibrium_start(pool, model, given, solve);
     TangentRun *run = tangent_open_backwards(pool, model, scene, solve, name, count);
     Gradient *gradient = pool_alloc(pool, sizeof *gradient);
     *gradient = (Gradient){.variables = 0};
@@ -177,7 +179,13 @@ const Gradient *gradient_find(Pool *pool, const Scalar *scalar, const Scene *sce
     const bool backwards = gradient->variables > few && adjoint_fits(model, scene);
     if (!backwards)
         run = tangent_open(pool, model, scene, solve, name, count);
-    scene = with_values(pool, model, scene, gradient, name, value, count);
+    if (given->equilibrium) {
+        given = with_values(pool, model, given, gradient, name, value, count, false);
+        const Equilibrium *found = equilibrium_find(pool, model, given, solve);
+        scene = scene_even(pool, model, equilibrium_scene(pool, given, found));
+        tangent_rests(run, found);
+    }
+    scene = with_values(pool, model, scene, gradient, name, value, count, true);
     const size_t room = (size_t)(gradient->variables + 1) * sizeof(double);
     gradient->derivative = pool_alloc(pool, room);
     const int status = backwards ? go_backwards(gradient, run, scalar->kind, scene)

@@ -34,7 +34,8 @@ typedef struct Gradient {
     double *derivative; /* [variables] */
 } Gradient;
 
-/* wanted, count: as in tangent_open(), which ends the program where it must; NAME=VALUE sets the number first. */
+/* wanted, count: as in tangent_open(), which ends the program where it must; NAME=VALUE sets the number first.
+ * scene: may start in equilibrium, which is found here. */
 const Gradient *gradient_find(Pool *pool, const Scalar *scalar, const Scene *scene, Solve solve,
                               const char *const *wanted, int count);
 

@@ -36,7 +36,6 @@ static void write_csv(Pool *pool, const Gradient *gradient, const char *path)
 void gradient_report(Pool *pool, const Model *model, const Scene *scene, const Request *request)
 {
     const Scalar scalar = scalar_read(pool, model, scene, request->formula);
-    scene = equilibrium_start(pool, model, scene, request->solve);
     const Gradient *gradient = gradient_find(pool, &scalar, scene, request->solve, request->key, request->keys);
     static const char *const at[] = {
         [SCALAR_END] = "at the end,", [SCALAR_INTEGRAL] = "up to", [SCALAR_MAXIMUM] = "at its maximum,"};

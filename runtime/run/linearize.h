@@ -109,6 +109,9 @@ typedef struct Equilibrium {
 const Equilibrium *equilibrium_find(Pool *pool, const Model *model, const Scene *scene, Solve solve);
 /* The same on locked wheels. */
 const Equilibrium *equilibrium_find_locked(Pool *pool, const Model *model, const Scene *scene, Solve solve);
+/* z [count]: how the places and fast states of the equilibrium change by number j of a kind, which is not
+ * LINEAR_MOTION; along neutral directions they stay. Returns a status. */
+int equilibrium_change(const Equilibrium *found, LinearKind kind, int j, double *z);
 /* True if a scene starts at rest: all velocities at most 1e-9 m/s or rad/s. */
 bool equilibrium_stands(const Model *model, const Scene *scene);
 /* Output components of force elements (loads: -1) and of wheels (fz first) of Equilibrium.model. */

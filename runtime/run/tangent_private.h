@@ -91,6 +91,8 @@ struct TangentRun {
     bool *live;                  /* [states] of values of controllers: it changes with something though it may look the
                                   * same */
     DriveSlope *drive;           /* [carried] */
+    const Equilibrium *rests;    /* that the scene starts in; NULL: where it says */
+    double *begins;              /* [variables][states] derivatives of the state at time 0 */
 };
 
 /* How the inputs change by a variable at a time: up to three numbers from the input on; returns how many. */

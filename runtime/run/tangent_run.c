@@ -15,6 +15,7 @@
 #include "run/engines.h"
 #include "run/formula_blame.h"
 #include "run/knot.h"
+#include "run/start_change.h"
 #include "scene/profile.h"
 #include "tape/engine_tape.h"
 
@@ -571,6 +572,7 @@ static TangentRun *open(Pool *pool, const Model *model, const Scene *scene, Solv
     run->trail = backwards ? trail_new(pool) : NULL;
     run->live = pool_alloc(pool, (size_t)run->states + 1);
     run->drive = pool_alloc(pool, ((size_t)run->carried + 1) * sizeof *run->drive);
+    run->begins = pool_alloc(pool, (size_t)(run->variables * run->states + 1) * sizeof *run->begins);
     make_both(run);
     tangent_events_open(run, condition_has(model));
     return run;
@@ -605,6 +607,11 @@ double tangent_time(const TangentRun *run)
     return run->both ? gic_time(run->both) : 0;
 }
 
+void tangent_rests(TangentRun *run, const Equilibrium *found)
+{
+    run->rests = found;
+}
+
 int tangent_begin(TangentRun *run, const Scene *scene)
 {
     double *state = tangent_array(run, run->descriptor.state_offset);
@@ -623,11 +630,11 @@ int tangent_begin(TangentRun *run, const Scene *scene)
     if (status != GIC_OK)
         return status;
     tangent_put(run, tape_array(run->self, run->code->state_offset), 0, state);
+    status = start_changes(run, run->begins);
+    if (status != GIC_OK)
+        return status;
     for (int k = 0; k < run->carried; ++k)
-        if (run->variable[k].kind == BY_INITIAL) {
-            linear_direction(run->linear, run->self, LINEAR_MOTION, run->variable[k].index);
-            tangent_put(run, run->linear->along.y, 1 + k, state);
-        }
+        tangent_put(run, run->begins + k * run->states, 1 + k, state);
     status = settle_both(run->both, state);
     memcpy(input, tape_array(run->self, run->code->input_offset),
            (size_t)run->inputs * sizeof *input); /* profiles set those that they are of */

@@ -26,14 +26,16 @@ typedef struct TangentRun TangentRun;
 
 /* model: with condition_outputs() of the scene, after which those that controllers read may come; else conditions are
  * refused. wanted, count: names of variables, or `initial`, `parameter`, `input` for all of a kind; 0: all. The scene
- * starts as it says, not in equilibrium. Ends in diag_fail for scenes that can not be differentiated, or in
- * diag_fail_call for names that are none. */
+ * starts as it says, not in equilibrium: tangent_rests(). Ends in diag_fail for scenes that can not be differentiated,
+ * or in diag_fail_call for names that are none. */
 TangentRun *tangent_open(Pool *pool, const Model *model, const Scene *scene, Solve solve, const char *const *wanted,
                          int count);
 /* The same for the way back: steps have no derivatives, and leave a trail for adjoint_run.h. */
 TangentRun *tangent_open_backwards(Pool *pool, const Model *model, const Scene *scene, Solve solve,
                                    const char *const *wanted, int count);
 int tangent_variables(const TangentRun *run, const RunVariable **variable);
+/* The scene starts in this equilibrium, which follows parameters and inputs. NULL: where it says. */
+void tangent_rests(TangentRun *run, const Equilibrium *found);
 /* Time 0 of the scene that it was opened for, which may have other initial values and parameters now. */
 int tangent_begin(TangentRun *run, const Scene *scene);
 /* A step of it, or less where a condition ends the run. All of these return a status. */
