@@ -15,7 +15,7 @@ models=$(cd "$(dirname "$0")/../../models" && pwd)
 cp "$runtime"/gic_runtime.[ch] "$runtime"/gic_road.[ch] "$targets"/* "$work/"
 cd "$work" || exit 1
 options="-std=c99 -O2 -ffp-contract=off -Wall -Wextra -Werror -I."
-code="drive.c hmmwv.c gic_runtime.c gic_road.c"
+code="drive.c print.c hmmwv.c gic_runtime.c gic_road.c"
 # a run that diverges would still agree with itself: the chassis' height after it, from its bits on the host
 height() {
     python3 -c "import struct, sys

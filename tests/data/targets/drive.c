@@ -11,24 +11,6 @@ enum { STEPS = 400, BETWEEN = 50, POINTS = 161 };
 
 static hmmwv car;
 
-/* Sign, exponent and fraction as hexadecimal digits, most significant first. */
-static void print_bits(gic_real value)
-{
-    static const char digit[] = "0123456789abcdef";
-    unsigned char bytes[sizeof value];
-    char text[2 * sizeof value + 2];
-    unsigned i;
-    for (i = 0; i < sizeof value; ++i)
-        bytes[i] = ((const unsigned char *)&value)[sizeof value - 1 - i]; /* all targets are little-endian */
-    for (i = 0; i < sizeof value; ++i) {
-        text[2 * i] = digit[bytes[i] >> 4];
-        text[2 * i + 1] = digit[bytes[i] & 15];
-    }
-    text[2 * i] = '\n';
-    text[2 * i + 1] = 0;
-    target_print(text);
-}
-
 int main(void)
 {
     static gic_real height[2 * POINTS];
