@@ -189,3 +189,16 @@ const Scene *scene_choose_step(Pool *pool, const Model *model, const Scene *scen
         tell(&choice, scene, chosen, work, implicit);
     return chosen;
 }
+
+const Scene *scene_with_choice(Pool *pool, const Scene *scene, const Scene *chosen)
+{
+    Scene *own = pool_alloc(pool, sizeof *own);
+    *own = *scene;
+    own->automatic = chosen->automatic;
+    own->method = chosen->method;
+    own->step = chosen->step;
+    own->per_output = chosen->per_output;
+    own->ratio = chosen->ratio;
+    own->steady = chosen->steady;
+    return own;
+}

@@ -14,5 +14,7 @@
  * implicit: the engine has implicit steps. After equilibrium_start(). Ends in diag_fail where the run can't start. */
 const Scene *scene_choose_step(Pool *pool, const Model *model, const Scene *scene, Solve solve, bool implicit,
                                bool quiet);
+/* The scene with what was chosen for the same one with another start. */
+const Scene *scene_with_choice(Pool *pool, const Scene *scene, const Scene *chosen);
 
 #endif

@@ -76,6 +76,13 @@ static void check_implicit(Pool *pool, const char *name, const Scene *scene)
         scene_no_implicit(scene, pool_print(pool, "the engine '%s'", name));
 }
 
+void engine_check_shares(const Engine *engine, const Scene *scene)
+{
+    if (scene->spread && engine->code && engine->code->implicit && !engine->code->implicit->share_count)
+        diag_fail((Place){scene->source, 0, 0}, "remove spread_jacobian from the scene",
+                  "the Jacobian of this model is not made by shares (models/STIFF.md)");
+}
+
 const Engine *engine_open_run(Pool *pool, const char *name, const Model *model, const Scene *scene, const char *path,
                               bool drawn, const EngineOptions *options)
 {
@@ -89,8 +96,6 @@ const Engine *engine_open_run(Pool *pool, const char *name, const Model *model, 
     own.facts = path && !own.implicit ? scene_facts(pool, model, scene, path, drawn) : NULL;
     own.validation = scene_validation(pool, model, scene);
     const Engine *engine = engine_open(pool, name, model, &own);
-    if (own.spread && engine->code && engine->code->implicit && !engine->code->implicit->share_count)
-        diag_fail((Place){0}, "remove spread_jacobian from the scene",
-                  "the Jacobian of this model is not made by shares (models/STIFF.md)");
+    engine_check_shares(engine, scene);
     return engine;
 }

@@ -32,6 +32,9 @@ const Engine *engine_open(Pool *pool, const char *name, const Model *model, cons
 const Engine *engine_open_run(Pool *pool, const char *name, const Model *model, const Scene *scene, const char *path,
                               bool drawn, const EngineOptions *options);
 
+/* Fail if the scene asks for Jacobians by shares, and the engine's code with implicit steps has none. */
+void engine_check_shares(const Engine *engine, const Scene *scene);
+
 /* engine_auto.c: the engine `tcc`, with a compiler for faster code in the background. */
 const Engine *engine_auto(Pool *pool, const Model *model, const EngineOptions *options);
 /* Call between two steps: faster code, which gives the same bits from the state of `present` on; NULL: not yet, or

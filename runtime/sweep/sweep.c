@@ -12,6 +12,7 @@
 #include "gic_runtime.h"
 #include "host/host.h"
 #include "model/model.h"
+#include "run/choose_step.h"
 #include "run/engines.h"
 #include "run/run.h"
 #include "scene/scene.h"
@@ -42,14 +43,15 @@ static bool compiler_starts(Pool *pool, const EngineOptions *code)
 }
 
 /* Code for many vehicles, or for one. */
-static const Engine *open_code(Pool *pool, const SweepRequest *request, const Model *model, const Scene *scene,
-                               const gic_batch_model **many)
+static const Engine *open_lanes_or_one(Pool *pool, const SweepRequest *request, const Model *model, const Scene *scene,
+                                       const gic_batch_model **many)
 {
     const Batch batch = {VEHICLES, LANES};
     const Engine *engine = NULL;
     const char *why = lanes_unfit(scene, model);
     EngineOptions code = request->code;
     code.implicit = scene_implicit(scene);
+    code.spread = scene->spread;
     if (request->engine && !engine_has_implicit(request->engine))
         scene_no_implicit(scene, pool_print(pool, "the engine '%s'", request->engine));
     if (request->engine)
@@ -64,6 +66,14 @@ static const Engine *open_code(Pool *pool, const SweepRequest *request, const Mo
             pool_print(pool, "%s: note: each run by itself instead of lanes: %s\n", program_place().source->path, why));
     const bool compiled = *many || (!tried && compiler_starts(pool, &code));
     return engine_open(pool, compiled ? "cc" : "tcc", model, &code);
+}
+
+static const Engine *open_code(Pool *pool, const SweepRequest *request, const Model *model, const Scene *scene,
+                               const gic_batch_model **many)
+{
+    const Engine *engine = open_lanes_or_one(pool, request, model, scene, many);
+    engine_check_shares(engine, scene);
+    return engine;
 }
 
 static uint64_t file_hash(Pool *pool, const char *path)
@@ -132,6 +142,9 @@ static void add_facts(Pool *pool, const Sweep *sweep, const EngineOptions *code,
         add_fact(pool, form, "description", sweep->model->description);
     add_fact(pool, form, "model_hash", hash_text(pool, source_hash(sweep->model->source)));
     add_fact(pool, form, "scene_hash", hash_text(pool, source_hash(sweep->scene->source)));
+    if (sweep->chosen) /* should two machines choose otherwise, their parts don't go together */
+        add_fact(pool, form, "integrator",
+                 pool_print(pool, "%s, steps of %.17g s", integrator_name(sweep->scene->method), sweep->scene->step));
     add_fact(pool, form, "engine", sweep->engine->name);
     add_fact(pool, form, "lanes", sweep->many ? "yes" : "no");
     add_fact(pool, form, "options", options.s);
@@ -269,10 +282,13 @@ static void open_sweep(Sweep *sweep, const SweepRequest *request, bool planned, 
         source_keep(sweep->scene->source, i ? journal_path : request->results);
     }
     scene_no_rig(sweep->scene);
-    scene_no_auto(sweep->scene, "a sweep");
-    sweep->drawn = sweep->scene;
+    const Scene *drawn = sweep->scene;
     sweep->solve = request->code.solve;
     sweep->scene = equilibrium_start(pool, model, sweep->scene, request->code.solve);
+    sweep->chosen = sweep->scene->automatic;
+    sweep->scene = scene_choose_step(pool, model, sweep->scene, request->code.solve,
+                                     !request->engine || engine_has_implicit(request->engine), request->quiet);
+    sweep->drawn = sweep->chosen ? scene_with_choice(pool, drawn, sweep->scene) : drawn;
     sweep->engine = open_code(pool, request, model, sweep->scene, &sweep->many);
     table->engine = sweep->engine;
     plan_close(pool, sweep->plan, model, sweep->engine);

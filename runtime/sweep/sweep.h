@@ -260,6 +260,7 @@ typedef struct Sweep {
     const Model *model;
     const Scene *drawn; /* as the file has it: */
     const Scene *scene; /* begins in equilibrium, if that is asked for */
+    bool chosen;        /* with the integrator that was chosen for its own values, in all runs */
     Solve solve;
     SweepPlan *plan;
     const Engine *engine;

@@ -12,7 +12,7 @@ car=$root/models/quarter_car.veh
 
 # scene SPRING: with its spring, m
 scene() {
-    printf 'gicscene: 1\nduration: 0.4\nstep: 0.004\noutput_step: 0.02\nintegrator: %s\nkeep_jacobian: 3\noutputs: [carriage.z, wheel.z]\n' "$integrator"
+    printf 'gicscene: 1\nduration: 0.4\nstep: 0.004\noutput_step: 0.02\nintegrator: %s\nkeep_jacobian: 3\nspread_jacobian: %s\noutputs: [carriage.z, wheel.z]\n' "$integrator" "$shares"
     echo "initial: {coordinates: {spring: $1}}"
 }
 # the columns of a sweep's row in a run of gicrun: end, least, greatest of both outputs
@@ -21,17 +21,24 @@ ranges() {
                       if (NR == 2 || $i + 0 > high[i] + 0) high[i] = $i } }
              END { print end[2] "," low[2] "," high[2] "," end[3] "," low[3] "," high[3] }' "$1"
 }
-for integrator in ros3 imex; do
+while read -r integrator shares; do
     scene 0.25 >sweep.scene
     "$gicsweep" --engine tcc "$car" sweep.scene --vary state/spring=0.24:0.28:3 -o sweep.csv 2>err
-    check "$integrator: a sweep" [ $? -eq 0 ]
+    check "$integrator, shares $shares: a sweep" [ $? -eq 0 ]
     for run in 0 2; do
         row=$(sed -n "$((run + 2))p" sweep.csv)
         scene "$(echo "$row" | cut -d, -f2)" >one.scene
         "$gicrun" -q --general "$car" one.scene -o one.csv 2>err
-        check "$integrator: run $run has gicrun's digits" [ "$(echo "$row" | cut -d, -f5-)" = "$(ranges one.csv)" ]
+        check "$integrator, shares $shares: run $run has gicrun's digits" [ "$(echo "$row" | cut -d, -f5-)" = "$(ranges one.csv)" ]
     done
-done
+    cp sweep.csv "$integrator.$shares.csv"
+done <<'END'
+ros3 false
+imex true
+imex false
+END
+! cmp -s imex.true.csv imex.false.csv
+check "with shares it is another Jacobian" [ $? -eq 0 ]
 "$gicsweep" "$car" sweep.scene --vary state/spring=0.24:0.28:2 -o other.csv 2>err
 check "no lanes, which it says" says "note: each run by itself instead of lanes: implicit steps are made run by run"
 cut -d, -f3- other.csv | sed -n 2p >first
@@ -39,9 +46,53 @@ check "the digits are the same" sh -c 'cut -d, -f3- sweep.csv | sed -n 2p | cmp 
 rm -f none.csv
 "$gicsweep" --engine tape "$car" sweep.scene --vary state/spring=0.24:0.28:2 -o none.csv 2>err
 check "no implicit steps with the tape" sh -c '[ ! -e none.csv ] && grep -q "tape.* does not take implicit steps (imex) yet" err'
-sed '/keep/d; s/^integrator: .*/integrator: auto/' sweep.scene >auto.scene
-"$gicsweep" "$car" auto.scene --vary state/spring=0.24:0.28:2 -o none.csv 2>err
-check "a sweep does not choose" sh -c '[ ! -e none.csv ] && grep -q "a sweep does not choose an integrator (auto) yet" err'
+# ---- auto: a body on a spring of 1000 rad/s at its own stiffness, which one choice serves; runs start in equilibria of their own
+cat >stiff.veh <<'END'
+gicgen: 1
+model: stiff
+gravity: [1, 0, 0]
+base: ground
+parameters: {k: {value: 1e6, unit: N/m, tunable: true}}
+bodies: {b: {mass: 1, com: [0, 0, 0], inertia: [1, 1, 1]}}
+joints: {j: {type: prismatic, bodies: [ground, b], axis: [1, 0, 0]}}
+coordinates: {x: {type: translation, bodies: [ground, b], axis: [1, 0, 0], range: [-1, 1]}}
+forces: {f: {type: spring_damper, coordinate: x, stiffness: k, damping: 200, free: 0}}
+inputs: {push: {unit: N}}
+outputs: {x: {type: coordinate, coordinate: x}}
+END
+sed -i '/^inputs/d' stiff.veh
+while read -r step named method; do
+    for start in 'initial: {equilibrium: true}' 'initial: {rates: {x: 1e-3}}'; do
+        printf 'gicscene: 1\nduration: 0.4\nstep: %s\noutput_step: 0.02\nintegrator: auto\n%s\n' "$step" "$start" >auto.scene
+        sed "s/^step: .*/step: $named/; s/auto/$method/" auto.scene >named.scene
+        "$gicrun" stiff.veh auto.scene -o one.csv 2>&1 | grep 'integrator auto' >gicrun.said
+        for scene in auto named; do
+            "$gicsweep" stiff.veh $scene.scene --vary parameter/k=5e5:1.2e6:5 -o $scene.csv 2>$scene.err
+            verdict $? "$method, $scene, $start"
+        done
+        grep 'integrator auto' auto.err | cmp - gicrun.said && grep -q "integrator auto: $method, steps of $named s$" gicrun.said
+        check "$method, $start: what it takes is gicrun's choice for the scene" [ $? -eq 0 ]
+        cmp auto.csv named.csv
+        check "$method, $start: each run is that of its name" [ $? -eq 0 ]
+    done
+done <<'END'
+0.02 0.02 ros3
+0.001 0.0005 ab3
+END
+# parts, begun again: the choice is a part of the plan
+"$gicsweep" -q stiff.veh auto.scene --vary parameter/k=5e5:1.2e6:5 --slurm plan --parts 3 2>err
+check "a plan" grep -q 'integrator.ab3, steps of 0.0005' plan/plan
+for part in 1 2 3 2; do
+    "$gicsweep" -q stiff.veh auto.scene --vary parameter/k=5e5:1.2e6:5 --shard $part/3 -o plan 2>err
+    check "part $part" [ $? -eq 0 ]
+done
+"$gicsweep" -q --merge plan -o merged.csv && cmp merged.csv auto.csv
+check "parts have the bytes of one sweep" [ $? -eq 0 ]
+sed -i 's/^step: .*/step: 0.02/' auto.scene
+"$gicrun" --engine tape stiff.veh auto.scene -o one.csv 2>&1 | grep -A 2 'integrator auto' >gicrun.said
+"$gicsweep" --engine tape stiff.veh auto.scene --vary parameter/k=5e5:1.2e6:2 -o tape.csv 2>err
+grep -A 2 'integrator auto' err | cmp - gicrun.said && grep -q 'no implicit steps with this engine' gicrun.said
+check "without implicit steps it takes others, and says so" [ $? -eq 0 ]
 
 # batches: a model without fast states, and one with
 cat >many.py <<'END'
