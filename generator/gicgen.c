@@ -211,8 +211,8 @@ static Options read_options(int count, char **word)
         usage_error("--derivatives is for the code of one vehicle in any scene, without --batch and --scene; "
                     "vehicles of a batch have derivatives beside it (models/DERIVATIVES.md, Many vehicles)",
                     NULL);
-    if (options.spread && (!options.implicit || fmu))
-        usage_error("it goes with --implicit, for the code of one vehicle", "--spread-jacobian");
+    if (options.spread && !options.implicit)
+        usage_error("it goes with --implicit", "--spread-jacobian");
     if (options.implicit && !fmu && (options.task != TASK_GENERATE || options.scene))
         usage_error("--implicit is for an FMU and the code of one vehicle in any scene, without --batch and --scene",
                     NULL);
@@ -312,8 +312,11 @@ static void write_fmu(Pool *pool, const Model *model, const Sequence *sequence, 
         usage_error("the name of an FMU must end in .fmu", path);
     const Formulation *formulation = formulate(pool, model, sequence, options->solve, options->recovery);
     formulation_validate(pool, formulation, NULL);
-    fmu_write(pool, options->fmi, formulation, setting->scene, options->derivatives,
-              options->implicit || (setting->scene && scene_implicit(setting->scene)), options->templates, path);
+    Style style = style_readable;
+    style.derivatives = options->derivatives;
+    style.implicit = options->implicit || (setting->scene && scene_implicit(setting->scene));
+    style.spread = options->spread || (setting->scene && setting->scene->spread);
+    fmu_write(pool, options->fmi, formulation, setting->scene, &style, options->templates, path);
 }
 
 static void write_graph(Pool *pool, const Model *model, const Sequence *sequence, const Options *options)

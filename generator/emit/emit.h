@@ -89,8 +89,8 @@ void templates_check(Pool *pool, const char *templates, const Insertions *const 
 /* ---- model_file.c: all of it */
 
 /* The generated C and its header. `header`: the name by which the C includes it, NULL: it doesn't. `templates` as
- * above. */
-void generate(Pool *pool, const Formulation *f, const Style *style, const char *templates, const char *header, Text *c,
+ * above. True: with style->spread, Jacobians can be made by shares. */
+bool generate(Pool *pool, const Formulation *f, const Style *style, const char *templates, const char *header, Text *c,
               Text *h);
 
 /* ---- batch.c: many vehicles at once */

@@ -739,7 +739,7 @@ static void check_templates(Pool *pool, const char *templates)
     templates_check(pool, templates, points);
 }
 
-void generate(Pool *pool, const Formulation *formulation, const Style *style, const char *templates, const char *header,
+bool generate(Pool *pool, const Formulation *formulation, const Style *style, const char *templates, const char *header,
               Text *c, Text *h)
 {
     const char *name = formulation->model->name;
@@ -767,4 +767,5 @@ void generate(Pool *pool, const Formulation *formulation, const Style *style, co
     template_expand(pool, h, templates, "model.h.in", name, NULL, &header_points, &g);
     c->s = wrap_lines(pool, c->s, &c->size);
     h->s = wrap_lines(pool, h->s, &h->size);
+    return is_spread(&g);
 }

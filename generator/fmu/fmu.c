@@ -111,25 +111,33 @@ static double picture_height(const Text *png)
 }
 
 /* Everything but binaries. The token follows from all that the description and the C files have. */
-static void add_files(Members *members, int version, const Formulation *f, const Scene *scene, bool derivatives,
-                      bool implicit, const char *templates, const char *path, const Text *picture)
+static void add_files(Members *members, int version, const Formulation *f, const Scene *scene, const Style *style,
+                      const char *templates, const char *path, const Text *picture)
 {
     Pool *pool = members->pool;
     const char *name = f->model->name, *api = version == 2 ? "fmi2" : "fmi3";
     const char *c_name = pool_print(pool, "%s.c", name), *api_name = pool_print(pool, "%s.c", api);
-    const char *const source[] = {
-        c_name, "gic_runtime.c", "fmu_core.c", "fmu_road.c", api_name, derivatives ? "fmu_derivative.c" : NULL, NULL};
-    Style style = style_readable;
-    style.derivatives = derivatives;
-    style.implicit = implicit;
+    const char *const source[] = {c_name,       "gic_runtime.c", "fmu_core.c",
+                                  "fmu_road.c", api_name,        style->derivatives ? "fmu_derivative.c" : NULL,
+                                  NULL};
     Text c = {.pool = pool}, h = {.pool = pool}, xml = {.pool = pool}, header = {.pool = pool}, page = {.pool = pool};
     const Dependence *rate = dependences_of_rates(pool, f);
-    Description d = {
-        pool,    f,    variables_make(pool, f, scene, implicit), experiment_of(scene),           "",
-        source,  rate, dependences_of_outputs(pool, f, rate),    dependences_of_places(pool, f), derivatives,
-        implicit};
+    const bool shares = generate(pool, f, style, templates, pool_print(pool, "%s.h", name), &c, &h);
+    if (scene && scene->spread && !shares)
+        diag_fail((Place){scene->source, 0, 0}, "remove spread_jacobian from the scene",
+                  "the Jacobian of this model is not made by shares (models/STIFF.md)");
+    Description d = {.pool = pool,
+                     .f = f,
+                     .variables = variables_make(pool, f, scene, style->implicit, shares),
+                     .experiment = experiment_of(scene),
+                     .token = "",
+                     .source = source,
+                     .rate = rate,
+                     .out = dependences_of_outputs(pool, f, rate),
+                     .place = dependences_of_places(pool, f),
+                     .derivatives = style->derivatives,
+                     .implicit = style->implicit};
     void (*const describe)(Text *, const Description *) = version == 2 ? describe_2 : describe_3;
-    generate(pool, f, &style, templates, pool_print(pool, "%s.h", name), &c, &h);
     Text draft = {.pool = pool};
     describe(&draft, &d);
     write_model_header(&draft, templates, &d);
@@ -150,7 +158,7 @@ static void add_files(Members *members, int version, const Formulation *f, const
     const char *const layer[] = {"fmu_core.c", "fmu_core.h", "fmu_road.c", api_name, pool_print(pool, "%s_api.h", api)};
     for (size_t i = 0; i < sizeof layer / sizeof *layer; ++i)
         add_layer(members, templates, layer[i]);
-    if (derivatives)
+    if (style->derivatives)
         add_layer(members, templates, "fmu_derivative.c");
     add_embedded(members, "documentation/licenses/", "LICENSE");
     if (version == 3) {
@@ -162,7 +170,7 @@ static void add_files(Members *members, int version, const Formulation *f, const
     }
 }
 
-void fmu_write(Pool *pool, int version, const Formulation *f, const Scene *scene, bool derivatives, bool implicit,
+void fmu_write(Pool *pool, int version, const Formulation *f, const Scene *scene, const Style *style,
                const char *templates, const char *path)
 {
     Members members = {.pool = pool};
@@ -175,7 +183,7 @@ void fmu_write(Pool *pool, int version, const Formulation *f, const Scene *scene
     interrupt_hold(); /* as programs that are run ask for */
     const Text picture = draw(pool, f);
     interrupt_release();
-    add_files(&members, version, f, scene, derivatives, implicit, templates, path, &picture);
+    add_files(&members, version, f, scene, style, templates, path, &picture);
     interrupt_hold(); /* or the folder would stay */
     if (!mkdtemp(folder))
         diag_fail(program_place(), "set TMPDIR to a folder that can be written", "no folder can be made in %s: %s",

@@ -51,13 +51,13 @@ typedef struct Variables {
 
 /* The simulation that an FMU starts with. */
 typedef struct Experiment {
-    double step, stop;       /* s */
-    int method, ratio, keep; /* method: gic_method; keep: of implicit ones, steps with one Jacobian */
+    double step, stop;               /* s */
+    int method, ratio, keep, spread; /* method: gic_method; of implicit ones: steps with one Jacobian; 1: by shares */
     double steady;
 } Experiment;
 
 Experiment experiment_of(const Scene *scene);
-const Variables *variables_make(Pool *pool, const Formulation *f, const Scene *scene, bool implicit);
+const Variables *variables_make(Pool *pool, const Formulation *f, const Scene *scene, bool implicit, bool shares);
 /* The value reference. */
 unsigned variable_reference(const Variable *variable);
 bool is_output(const Variable *variable);

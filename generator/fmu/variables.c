@@ -34,7 +34,7 @@ int event_indicators(const Variables *all)
 Experiment experiment_of(const Scene *scene)
 {
     /* without a scene: steps that all of our models take, and ten seconds */
-    Experiment experiment = {0.001, 10, GIC_AB3, 1, 1, 0};
+    Experiment experiment = {.step = 0.001, .stop = 10, .method = GIC_AB3, .ratio = 1, .keep = 1};
     if (!scene)
         return experiment;
     experiment.stop = scene->duration;
@@ -43,6 +43,7 @@ Experiment experiment_of(const Scene *scene)
         experiment.method = scene->method;
         experiment.ratio = scene->method == GIC_AB3 ? scene->ratio : 1;
         experiment.keep = scene_implicit(scene) ? scene->keep : 1;
+        experiment.spread = scene_implicit(scene) && scene->spread;
         experiment.steady = scene->steady;
     }
     return experiment;
@@ -390,7 +391,7 @@ static void add_step_count(Making *m, int k, const char *name, const char *descr
     set_start(v, start);
 }
 
-static void add_solver(Making *m, bool implicit)
+static void add_solver(Making *m, bool implicit, bool shares)
 {
     const Experiment experiment = experiment_of(m->scene);
     Variable *v =
@@ -406,9 +407,14 @@ static void add_solver(Making *m, bool implicit)
     if (implicit)
         add_step_count(m, 3, "solver.keep_jacobian", "with ROS2, ROS3, IMEX: steps with one Jacobian", KEEP_MOST,
                        experiment.keep);
+    if (shares) {
+        add_step_count(m, 4, "solver.spread_jacobian", "1: steps that keep a Jacobian make the next one by shares", 1,
+                       experiment.spread);
+        m->all->variable[m->all->count - 1].least = 0;
+    }
 }
 
-const Variables *variables_make(Pool *pool, const Formulation *f, const Scene *scene, bool implicit)
+const Variables *variables_make(Pool *pool, const Formulation *f, const Scene *scene, bool implicit, bool shares)
 {
     Making m = {pool, f, f->model, scene, pool_alloc(pool, sizeof *m.all)};
     Variable *time = add(&m, KIND_TIME, 0, "time", "s", "time");
@@ -419,7 +425,7 @@ const Variables *variables_make(Pool *pool, const Formulation *f, const Scene *s
     add_outputs(&m);
     add_places(&m);
     add_parameters(&m);
-    add_solver(&m, implicit);
+    add_solver(&m, implicit, shares);
     add_states(&m);
     add_contacts(&m);
     return m.all;

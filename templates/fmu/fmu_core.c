@@ -164,6 +164,7 @@ void fmu_reset(fmu_instance *instance)
     data->method = FMU_START_METHOD;
     data->ratio = FMU_START_RATIO;
     data->keep = FMU_START_KEEP;
+    data->spread = FMU_START_SPREAD;
     data->gear = FMU_START_GEAR;
 }
 
@@ -190,8 +191,11 @@ fmu_result fmu_initialize(fmu_instance *instance)
     if (status != GIC_OK)
         return said(instance, FMU_ERROR, &data->self, "the model can't be set up", status);
     adopt(data);
-    if (model->implicit)
-        ((gic_implicit_head *)(void *)((char *)&data->self + model->implicit->head_offset))->keep = data->keep;
+    if (model->implicit) {
+        gic_implicit_head *head = (gic_implicit_head *)(void *)((char *)&data->self + model->implicit->head_offset);
+        head->keep = data->keep;
+        head->spread = data->spread;
+    }
     gic_restart(&data->self, data->start_time);
     drive(data, -1);
     for (i = 0; i < FMU_INPUTS; ++i)
@@ -370,6 +374,12 @@ fmu_result fmu_set_real(fmu_instance *instance, uint32_t reference, double value
     return FMU_OK;
 }
 
+/* Has the code Jacobians by shares? */
+static int shares(void)
+{
+    return model->implicit && model->implicit->share_count > 0;
+}
+
 fmu_result fmu_get_integer(fmu_instance *instance, uint32_t reference, int32_t *value)
 {
     fmu_data *data = &instance->data;
@@ -377,6 +387,8 @@ fmu_result fmu_get_integer(fmu_instance *instance, uint32_t reference, int32_t *
     if (kind == FMU_SOLVER &&
         (i == FMU_SOLVER_METHOD || i == FMU_SOLVER_RATIO || (i == FMU_SOLVER_KEEP && model->implicit))) {
         *value = i == FMU_SOLVER_METHOD ? data->method : i == FMU_SOLVER_RATIO ? data->ratio : data->keep;
+    } else if (kind == FMU_SOLVER && i == FMU_SOLVER_SPREAD && shares()) {
+        *value = data->spread;
     } else if (kind == FMU_DISCRETE && model->discrete_count > model->free_base && i == model->free_base) {
         const fmu_result result = fmu_initialize(instance);
         *value = data->self.discrete[i];
@@ -410,6 +422,10 @@ fmu_result fmu_set_integer(fmu_instance *instance, uint32_t reference, int32_t v
             return fmu_say(instance, FMU_DISCARD, "solver.keep_jacobian must be from 1 to %d, not %d",
                            (int)FMU_MOST_KEEP, (int)value);
         data->keep = value;
+    } else if (kind == FMU_SOLVER && i == FMU_SOLVER_SPREAD && shares()) {
+        if (value < 0 || value > 1)
+            return fmu_say(instance, FMU_DISCARD, "solver.spread_jacobian is 0 or 1, not %d", (int)value);
+        data->spread = value;
     } else if (kind == FMU_DISCRETE && model->discrete_count > model->free_base && i == model->free_base) {
         if (value < FMU_LEAST_GEAR || value > FMU_MOST_GEAR)
             return fmu_say(instance, FMU_DISCARD, "there is no gear %d", (int)value);

@@ -58,6 +58,21 @@ drive cvode 1e-9 0.02 1 >"$work/unit.csv" 2>"$work/err" &&
     as_run 1e-7 "$work/variable.csv" "m rad 1 m/s rad/s"
 verdict $? "quarter_car: model exchange is as without"
 
+# Jacobians by shares: of the scene, switched off by the importer, and what is refused
+for version in 2 3; do
+    as imex '8, "spread_jacobian": true' 0.004 >"$work/shared.scene"
+    as imex 8 0.004 >"$work/whole.scene"
+    implicit "$root/models/quarter_car.veh" "$work/shared.scene" 0.02 1
+    cp "$work/steps.csv" "$work/shares.csv"
+    "$gicrun" -q --general --engine tcc "$root/models/quarter_car.veh" "$work/whole.scene" -o "$work/steps.csv" 2>"$work/err" &&
+        drive steps 0.02 1 solver.spread_jacobian=0 >"$work/unit.csv" 2>"$work/err" && as_run 0 "$work/steps.csv" && ! cmp -s "$work/steps.csv" "$work/shares.csv"
+    verdict $? "FMI $version.0: whole Jacobians that the importer chooses"
+    check "FMI $version.0: no half shares" says_of "solver.spread_jacobian is 0 or 1, not 2" solver.spread_jacobian=2
+done
+"$gicgen" --fmu 3 --solve augmented "$root/models/quarter_car.veh" --scene "$work/shared.scene" -o "$work/none.fmu" 2>"$work/err"
+[ $? -ne 0 ] && says "not made by shares" && [ ! -e "$work/none.fmu" ]
+verdict $? "shares of a model that has none are refused"
+
 # without a scene: --implicit, which lets the importer choose; it begins with AB3
 CC=$work/plain_cc "$gicgen" --fmu 3 --implicit "$root/models/pendulum.veh" -o "$work/choice.fmu" 2>"$work/err" &&
     rm -rf "$work/unit" && unpack "$work/choice.fmu" "$work/unit" &&
