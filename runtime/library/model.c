@@ -219,20 +219,26 @@ bool model_implicit(const OpenModel *model)
     return model->integrator && method_implicit(integrator_method(model->integrator));
 }
 
-static void open_engine(void *context)
+const Engine *model_code(const OpenModel *model, Pool *pool, bool spread)
 {
-    OpenModel *model = context;
     const char *name = strcmp(model->engine_name, "auto") != 0 ? model->engine_name : engines[0];
     bool own = false;
     for (size_t i = 0; i < sizeof engines / sizeof *engines; ++i)
         own = own || !strcmp(name, engines[i]);
     if (!own)
         option_fail("engine", name, "for instances and batches one of tcc, cc, tape");
-    Pool *pool = pool_new();
     EngineOptions options = model->options;
     options.lanes = 0; /* of runs alone */
     options.implicit = model_implicit(model) && engine_has_implicit(name);
-    model->engine = engine_open(pool, name, model_for(model, pool), &options);
+    options.spread = options.implicit && spread;
+    return engine_open(pool, name, model_for(model, pool), &options);
+}
+
+static void open_engine(void *context)
+{
+    OpenModel *model = context;
+    Pool *pool = pool_new();
+    model->engine = model_code(model, pool, false);
     model->engine_pool = pool;
 }
 

@@ -7,6 +7,7 @@
 #include "gic_batch.h"
 #include "gic_runtime.h"
 #include "library/library_private.h"
+#include "run/engines.h"
 #include "run/run.h"
 #include "scene/scene.h"
 
@@ -36,13 +37,14 @@ static const Scene *read_scene(Pool *pool, const OpenModel *open, const char *pa
 }
 
 /* Code for all of them at once. */
-static const Engine *open_lanes(Pool *pool, const Making *making, const gic_batch_model **many)
+static const Engine *open_lanes(Pool *pool, const Making *making, bool spread, const gic_batch_model **many)
 {
     const OpenModel *model = making->model;
     const Batch batch = {making->count, making->lanes};
     const char *why;
     EngineOptions options = model->options;
     options.implicit = model_implicit(model);
+    options.spread = spread;
     const Engine *engine = engine_batch(pool, model_for(model, pool), &options, &batch, IN_LANES_AS_ALONE, many, &why);
     if (!engine)
         diag_fail((Place){model->model->source, 0, 0}, "let them make their steps one after another: lanes 1",
@@ -57,7 +59,12 @@ static void make(void *context)
     Vehicles *vehicles = pool_alloc(pool, sizeof *vehicles);
     const Scene *scene = read_scene(pool, making->model, making->scene);
     const gic_batch_model *many = NULL;
-    const Engine *engine = making->lanes > 1 ? open_lanes(pool, making, &many) : making->model->engine;
+    const bool spread = scene && scene->spread && model_implicit(making->model);
+    const Engine *engine = making->lanes > 1 ? open_lanes(pool, making, spread, &many)
+                           : spread          ? model_code(making->model, pool, true)
+                                             : making->model->engine;
+    if (spread)
+        engine_check_shares(engine, scene);
     const size_t stride = many ? many->block_size : (engine->code->size + LINE - 1) / LINE * LINE;
     const size_t line = many && many->alignment > LINE ? many->alignment : LINE;
     *vehicles = (Vehicles){.pool = pool,
@@ -80,8 +87,11 @@ static void make(void *context)
 void vehicles_free(void *freed)
 {
     const Vehicles *vehicles = freed;
-    if (vehicles->many)
-        dlclose(vehicles->engine->library);
+    if (vehicles->engine != vehicles->model->engine) {
+        engine_close(vehicles->engine);
+        if (vehicles->engine->library)
+            dlclose(vehicles->engine->library);
+    }
     model_let(vehicles->model);
     pool_free(vehicles->pool);
 }

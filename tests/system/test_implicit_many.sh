@@ -126,7 +126,30 @@ for path in sys.argv[1:]:
         car.step(0.002, 3, "ros3")
         assert many.status[1] != 0 and (many.status[[0, 2, 3, 4]] == 0).all()
         assert all((many.states[v] == car.states.array).all() for v in (0, 2, 3, 4))
+# Jacobians by shares, which a scene asks for: as in a run, and in lanes
+model = gicgen.Model(sys.argv[1], integrator="imex")
+last = {}
+for name in "shared.scene", "whole.scene":
+    car = model.instance(name)
+    car.step(0.004, 100, "imex")
+    run = model.run(name)
+    last[name] = car.states.array.copy()
+    for output in "carriage.z", "wheel.z":
+        assert run[output][-1] == car.outputs[output], (name, output)
+    for lanes in 1, 4:
+        many = model.batch(5, name, lanes=lanes)
+        many.step(0.004, 100, "imex")
+        assert all((many.states[v] == car.states.array).all() for v in range(5)), (name, lanes)
+assert (last["shared.scene"] != last["whole.scene"]).any()
 plain = gicgen.Model(sys.argv[1])
+plain.instance("shared.scene").step(0.004, 1, "ab3")  # code without implicit steps needs no shares
+for lanes in 1, 4:
+    try:
+        gicgen.Model(sys.argv[1], integrator="imex", solve="augmented").batch(4, "shared.scene", lanes=lanes)
+    except gicgen.Error as error:
+        assert "not made by shares" in str(error), error
+    else:
+        raise AssertionError("shares of a model that has none")
 for what in plain.instance(), plain.batch(2):
     try:
         what.step(0.002, 1, "ros3")
@@ -135,6 +158,11 @@ for what in plain.instance(), plain.batch(2):
     else:
         raise AssertionError("implicit steps without their code")
 END
+integrator=imex
+for shares in true false; do
+    [ $shares = true ] && name=shared || name=whole
+    scene 0.26 | sed 's/keep_jacobian: 3/keep_jacobian: 8/' >$name.scene
+done
 GICGEN_LIBRARY=$(dirname "$gicrun")/libgic.so PYTHONPATH=$root/runtime/python /usr/bin/python3 many.py "$car" "$root/tests/data/laws/states.veh" >out 2>err
 verdict $? "vehicles of batches have the bits that they have alone"
 
