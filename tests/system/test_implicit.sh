@@ -314,7 +314,6 @@ for engine in tape gic gcp1; do
     refused "the engine '$engine' does not take implicit steps (ros3) yet" 'rk4' --engine $engine "$models/pendulum.veh" good.scene -o none.csv
 done
 refused 'a page of --drive does not take implicit steps' 'rk4' --drive none.csv.html "$models/hmmwv_vehicle.veh" good.scene
-refused 'the run to an operating point does not take implicit steps' 'rk4' --linearize --at 0.5 "$models/pendulum.veh" good.scene -o none.npz
 scene 1 0.01 'integrator: ros4' >bad.scene
 refused "there is no integrator 'ros4'" 'ros2, ros3' "$models/pendulum.veh" bad.scene -o none.csv
 # code and units of a scene: neither another integrator than the scene's, nor one that has not been chosen

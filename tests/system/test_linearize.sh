@@ -141,6 +141,28 @@ check 'tires that brake' differs "$root/models/hmmwv_tmeasy.veh" "$scenes/tires_
 check 'tunable geometry, on waves' differs "$root/tests/data/tuning/car.veh" "$work/waves.scene" 0.6
 check 'tunable mechanisms' differs "$root/tests/data/tuning/hand.veh"
 check 'inputs and parameters' differs "$root/tests/fmi/everything.veh"
+# a run by implicit steps, with Jacobians by shares, a driver and gears: the point is where gicrun is then
+sed '/^ratio/d; s/^integrator: .*/integrator: ros2\nkeep_jacobian: 4\nspread_jacobian: true/; s/^outputs:.*//' "$scenes/lane_change.scene" >"$work/implicit.scene"
+check 'by implicit steps' differs "$root/models/hmmwv_vehicle.veh" "$work/implicit.scene" 3
+cat >"$work/where.py" <<'END'
+import csv
+import sys
+
+import numpy as np
+
+linear = np.load(sys.argv[1])
+head, *rows = csv.reader(open(sys.argv[2]))
+row = next(row for row in rows if abs(float(row[0]) - linear["time"]) < 1e-9)
+run = {name.split(" ")[0]: float(number) for name, number in zip(head, row)}
+both = [(run[name], value) for name, value in zip(linear["outputs"], linear["y0"]) if name in run]
+assert len(both) >= 3, head
+assert all(abs(a - b) <= 1e-9 * (1 + abs(b)) for a, b in both), both
+END
+run -q --general --engine tcc "$root/models/hmmwv_vehicle.veh" "$work/implicit.scene" -o "$work/steps.csv"
+check 'which begin at the state of that run' python "$work/where.py" "$work/linear.npz" "$work/steps.csv"
+sed 's/^integrator: .*/integrator: auto/; /_jacobian/d' "$work/implicit.scene" >"$work/auto.scene"
+run -q --linearize --at 3 "$root/models/hmmwv_vehicle.veh" "$work/auto.scene" -o "$work/none.npz"
+check 'auto is refused' sh -c "grep -q 'linearize does not choose an integrator (auto) yet' '$work/err' && [ ! -e '$work/none.npz' ]"
 # the comparison can fail
 sed 's/stiffness: 283000/stiffness: 283003/' "$root/models/quarter_car.veh" >"$work/other.veh"
 run --linearize "$root/models/quarter_car.veh" -o "$work/linear.npz"
