@@ -161,7 +161,7 @@ END
 integrator=imex
 for shares in true false; do
     [ $shares = true ] && name=shared || name=whole
-    scene 0.26 | sed 's/keep_jacobian: 3/keep_jacobian: 8/' >$name.scene
+    scene 0.26 | sed 's/keep_jacobian: 3/keep_jacobian: 8/' >"$name".scene
 done
 GICGEN_LIBRARY=$(dirname "$gicrun")/libgic.so PYTHONPATH=$root/runtime/python /usr/bin/python3 many.py "$car" "$root/tests/data/laws/states.veh" >out 2>err
 verdict $? "vehicles of batches have the bits that they have alone"
