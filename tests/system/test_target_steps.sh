@@ -1,13 +1,14 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# test_target_steps.sh GICGEN [MODEL INPUT VALUE]: explicit and implicit steps of a vehicle on an emulated bare Cortex-M7 (tests/data/targets/steps.c):
+# test_target_steps.sh GICGEN: explicit and implicit steps of a vehicle on an emulated bare Cortex-M7 (tests/data/targets/steps.c):
 # every bit of the state is the host's, with elementary functions of the test's own on both; and how many instructions a step takes, with those of
 # newlib. QEMU's `-icount shift=0` lets an instruction take 1 ns, so a timer counts them, to 40; instructions are not cycles. Judged by a loop of known
-# length, by the same counts in another run, and by what the methods have in common. By default hmmwv_vehicle with half an accelerator.
+# length, by the same counts in another run, and by what the methods have in common. The vehicle is hmmwv_vehicle with
+# half an accelerator, or what environment variables name: MODEL, INPUT and its VALUE.
 gicgen=$1
-model=${2:-hmmwv_vehicle}
-input=${3:-ACCELERATOR}
-value=${4:-0.5}
+model=${MODEL:-hmmwv_vehicle}
+input=${INPUT:-ACCELERATOR}
+value=${VALUE:-0.5}
 targets=$(cd "$(dirname "$0")/../data/targets" && pwd)
 runtime=$(cd "$(dirname "$0")/../../runtime" && pwd)
 models=$(cd "$(dirname "$0")/../../models" && pwd)
