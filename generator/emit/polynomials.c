@@ -30,7 +30,7 @@ void write_polynomials(const Generation *g, Text *out)
         " *\n * Polynomials (--recovery polynomial) in place of Newton's iteration while a coordinate is within its\n"
         " * range, now and at the end of the step. Bound: of errors of places relative to the subset's size, of Euler\n"
         " * parameters, and of unit velocities and accelerations relative to the largest of their kind. Verified in\n"
-        " * double precision against solutions in extended precision at the stated number of points of each range;\n"
+        " * double precision against solutions in quad precision at the stated number of points of each range;\n"
         " * that series end below the bound is found from their coefficients, not proved between points.\n");
     for (int c = 0; c < g->sequence->classes; ++c) {
         const Class *class = &g->sequence->class[c];

@@ -1,34 +1,23 @@
 /* SPDX-License-Identifier: MIT
- * Motions of subsets of one coordinate in extended precision. The graph of a class is evaluated node by node in long
- * double; Newton's iteration goes on until corrections are rounding of that. */
+ * Motions of subsets of one coordinate in quad precision. The graph of a class is evaluated node by node; Newton's
+ * iteration goes on until corrections are rounding. */
 #include "subset/exact_motion.h"
 
 #include "expression/expression.h"
 #include "model/model.h"
 #include "sequence/sequence.h"
 
-#include <float.h>
 #include <math.h>
 #include <string.h>
 
-typedef struct Solved {
-    const Formula *formula; /* NULL: not needed */
-    int member;
-    const bool *pose_needed, *motion_needed; /* [nodes] */
-    long double *node;                       /* [nodes] */
-    long double *q;                          /* [7 bodies] */
-    long double *motion;                     /* [bodies][motion_size] */
-} Solved;
+static Quad sine(Quad a, bool cosine)
+{
+    Quad s, c;
+    quad_sincos(a, &s, &c);
+    return cosine ? c : s;
+}
 
-struct Exact {
-    Work *w;
-    const Sampling *sampling;
-    Solved *solved; /* [subsets] */
-    int *order;     /* subsets in the order in which they are solved */
-    int subsets;
-};
-
-static long double operate(const Node *node, long double a, long double b, long double c)
+static Quad operate(const Node *node, Quad a, Quad b, Quad c)
 {
     switch ((Op)node->op) {
     case OP_NEG: return -a;
@@ -36,19 +25,19 @@ static long double operate(const Node *node, long double a, long double b, long 
     case OP_SUB: return a - b;
     case OP_MUL: return a * b;
     case OP_DIV: return a / b;
-    case OP_SQRT: return sqrtl(a);
-    case OP_ABS: return fabsl(a);
-    case OP_SIN: return sinl(a);
-    case OP_COS: return cosl(a);
-    case OP_TAN: return tanl(a);
-    case OP_ASIN: return asinl(a);
-    case OP_ACOS: return acosl(a);
-    case OP_ATAN: return atanl(a);
-    case OP_EXP: return expl(a);
-    case OP_LOG: return logl(a);
-    case OP_TANH: return tanhl(a);
-    case OP_POW: return powl(a, b);
-    case OP_ATAN2: return atan2l(a, b);
+    case OP_SQRT: return quad_sqrt(a);
+    case OP_ABS: return quad_abs(a);
+    case OP_SIN: return sine(a, false);
+    case OP_COS: return sine(a, true);
+    case OP_TAN: return sine(a, false) / sine(a, true);
+    case OP_ASIN: return quad_atan2(a, quad_sqrt(1 - a * a));
+    case OP_ACOS: return quad_atan2(quad_sqrt(1 - a * a), a);
+    case OP_ATAN: return quad_atan2(a, 1);
+    case OP_EXP: return quad_exp(a);
+    case OP_LOG: return quad_log(a);
+    case OP_TANH: return 1 - 2 / (quad_exp(2 * a) + 1);
+    case OP_POW: return quad_exp(b * quad_log(a));
+    case OP_ATAN2: return quad_atan2(a, b);
     case OP_MIN: return a < b ? a : b;
     case OP_MAX: return a > b ? a : b;
     case OP_POSITIVE: return a > 0 ? b : c;
@@ -56,7 +45,7 @@ static long double operate(const Node *node, long double a, long double b, long 
     }
 }
 
-static long double input(const Exact *exact, int s, Element e, long double x)
+static Quad input(const Exact *exact, int s, Element e, Quad x)
 {
     const Subset *subset = &exact->w->sequence->subset[s];
     switch (e.array) {
@@ -75,7 +64,7 @@ static long double input(const Exact *exact, int s, Element e, long double x)
     }
 }
 
-static void evaluate(const Exact *exact, int s, const bool *needed, long double x)
+static void evaluate(const Exact *exact, int s, const bool *needed, Quad x)
 {
     Solved *own = &exact->solved[s];
     const Dag *dag = own->formula->dag;
@@ -87,8 +76,7 @@ static void evaluate(const Exact *exact, int s, const bool *needed, long double 
         if (node->level < LEVEL_VARIABLE)
             own->node[e] = ex_value(dag, e, own->member * each);
         else if (node->op == OP_INPUT)
-            own->node[e] =
-                ex_is_number(dag, e) ? (long double)node->element->number : input(exact, s, *node->element, x);
+            own->node[e] = ex_is_number(dag, e) ? (Quad)node->element->number : input(exact, s, *node->element, x);
         else
             own->node[e] = operate(node, own->node[node->arg[0]], own->node[node->arg[1]], own->node[node->arg[2]]);
     }
@@ -178,23 +166,23 @@ void exact_reset(Exact *exact)
 }
 
 /* Newton's iteration of one subset. */
-static const char *iterate(Exact *exact, int s, long double x)
+static const char *iterate(Exact *exact, int s, Quad x)
 {
     const int most = 40;
-    const long double leap = 0.3L, done = 64 * LDBL_EPSILON, good = 1e-16L;
+    const Quad leap = 0.3, done = 1e-31, good = 1e-24;
     Solved *own = &exact->solved[s];
     const Formula *f = own->formula;
     const int count = 7 * exact->w->sequence->subset[s].bodies;
-    long double size = f->size, before = HUGE_VALL;
+    Quad size = f->size, before = HUGE_VAL;
     for (int j = 0; j < count; ++j)
         if (j % 7 < 3)
-            size = fmaxl(size, fabsl(own->q[j]));
+            size = quad_max(size, quad_abs(own->q[j]));
     for (int i = 0; i < most; ++i) {
-        long double step = 0;
+        Quad step = 0;
         evaluate(exact, s, own->pose_needed, x);
         for (int j = 0; j < count; ++j) {
-            const long double to = own->node[f->implicit->found[j]];
-            const long double change = fabsl(to - own->q[j]) / (j % 7 < 3 ? size : 1);
+            const Quad to = own->node[f->implicit->found[j]];
+            const Quad change = quad_abs(to - own->q[j]) / (j % 7 < 3 ? size : 1);
             step = change <= step ? step : change; /* NaN is kept */
             own->q[j] = to;
         }
@@ -207,7 +195,7 @@ static const char *iterate(Exact *exact, int s, long double x)
     return "Newton's iteration does not converge";
 }
 
-static const char *solve_one(Exact *exact, int s, long double x)
+static const char *solve_one(Exact *exact, int s, Quad x)
 {
     Solved *own = &exact->solved[s];
     const Formula *f = own->formula;
@@ -218,40 +206,42 @@ static const char *solve_one(Exact *exact, int s, long double x)
     evaluate(exact, s, own->motion_needed, x);
     for (int i = 0; i < bodies * size; ++i) {
         own->motion[i] = own->node[*motion_number(&f->motion[i / size], i % size)];
-        if (!isfinite(own->motion[i]))
+        if (!quad_is_finite(own->motion[i]))
             return "the motion is not finite";
     }
     for (int i = 0; i < f->solve.checks; ++i) {
         const Check *check = &f->solve.check[i];
-        const long double value = own->node[check->value];
-        if (!((check->magnitude ? fabsl(value) : value) > check->least))
+        const Quad value = own->node[check->value];
+        if (!((check->magnitude ? quad_abs(value) : value) > check->least))
             return "the coordinate stops being independent";
     }
     return NULL;
 }
 
-const char *exact_solve(Exact *exact, int subset, long double x)
+bool exact_concerns(const Exact *exact, int subset, int other)
+{
+    /* members of a class have coordinates of their own: subsets that others refer to are left alone */
+    const Subset *own = &exact->w->sequence->subset[subset], *it = &exact->w->sequence->subset[other];
+    return other == subset || it->deps == 0 || (it->dep[0] == own->dep[0] && other < subset);
+}
+
+const char *exact_solve(Exact *exact, int subset, Quad x)
 {
     for (int i = 0; i < exact->subsets; ++i) {
         const int s = exact->order[i];
-        bool wanted = s == subset;
-        const Subset *own = &exact->w->sequence->subset[subset];
-        /* members of a class have coordinates of their own: subsets that others refer to are left alone */
-        wanted = wanted || exact->w->sequence->subset[s].deps == 0 ||
-                 (exact->w->sequence->subset[s].dep[0] == own->dep[0] && s < subset);
-        const char *lost = wanted ? solve_one(exact, s, x) : NULL;
+        const char *lost = exact_concerns(exact, subset, s) ? solve_one(exact, s, x) : NULL;
         if (lost)
             return lost;
     }
     return NULL;
 }
 
-const long double *exact_numbers(const Exact *exact, int subset)
+const Quad *exact_numbers(const Exact *exact, int subset)
 {
     return exact->solved[subset].motion;
 }
 
-const long double *exact_pose(const Exact *exact, int subset)
+const Quad *exact_pose(const Exact *exact, int subset)
 {
     return exact->solved[subset].q;
 }

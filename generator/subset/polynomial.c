@@ -4,6 +4,7 @@
  * and written as powers of t, which goes from -1 to 1 over the range. What the emitted statements give, in double
  * precision, is then compared with exact solutions at many points. */
 #include "base/message.h"
+#include "base/quad.h"
 #include "base/text.h"
 #include "expression/expression.h"
 #include "model/model.h"
@@ -12,7 +13,6 @@
 #include "subset/subset.h"
 #include "subset/subset_private.h"
 
-#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -30,17 +30,18 @@ enum {
     BODY_NUMBERS = 26 /* of a body: place 3, Euler parameters 4, S 6, alpha and acceleration 6; its pose q 7 */
 };
 
-static const long double smallest = 1e-17L; /* a number that stays below this share of its scale is 0 */
+static const double smallest = 1e-17; /* a number that stays below this share of its scale is 0 */
 
 typedef struct Fit {
     Work *w;
     Formula *formula;
-    int numbers;               /* of a member: BODY_NUMBERS a body */
-    long double *node, *point; /* [members][NODES or POINTS][numbers] exact numbers */
-    double *low, *high;        /* [members] the range */
-    long double scale[KINDS];  /* what errors are relative to: the largest over members and ranges */
-    int *degree;               /* [numbers] */
-    double *power;             /* [numbers][members][DEGREE_MOST + 1] coefficients of powers of t */
+    Quad cosine[4 * NODES]; /* of multiples of pi / (2 NODES) */
+    int numbers;            /* of a member: BODY_NUMBERS a body */
+    Quad *node, *point;     /* [members][NODES or POINTS][numbers] exact numbers */
+    double *low, *high;     /* [members] the range */
+    Quad scale[KINDS];      /* what errors are relative to: the largest over members and ranges */
+    int *degree;            /* [numbers] */
+    double *power;          /* [numbers][members][DEGREE_MOST + 1] coefficients of powers of t */
 } Fit;
 
 static int kind_of(int number)
@@ -57,15 +58,15 @@ static int kind_of(int number)
 }
 
 /* Euler parameters of a rotation, of the two signs the one nearer to `before`. */
-static void euler_of(const long double A[9], const long double before[4], long double p[4])
+static void euler_of(const Quad A[9], const Quad before[4], Quad p[4])
 {
-    const long double trace = A[0] + A[4] + A[8];
-    long double square[4] = {1 + trace, 1 + 2 * A[0] - trace, 1 + 2 * A[4] - trace, 1 + 2 * A[8] - trace};
+    const Quad trace = A[0] + A[4] + A[8];
+    Quad square[4] = {1 + trace, 1 + 2 * A[0] - trace, 1 + 2 * A[4] - trace, 1 + 2 * A[8] - trace};
     int most = 0;
     for (int i = 1; i < 4; ++i)
         most = square[i] > square[most] ? i : most;
-    const long double r = sqrtl(square[most]) / 2, s = 1 / (4 * r);
-    const long double odd[3] = {A[7] - A[5], A[2] - A[6], A[3] - A[1]};
+    const Quad r = quad_sqrt(square[most]) / 2, s = 1 / (4 * r);
+    const Quad odd[3] = {A[7] - A[5], A[2] - A[6], A[3] - A[1]};
     p[most] = r;
     for (int i = 1; i < 4; ++i)
         if (most == 0)
@@ -74,7 +75,7 @@ static void euler_of(const long double A[9], const long double before[4], long d
             p[i] = (A[3 * (i - 1) + most - 1] + A[3 * (most - 1) + i - 1]) * s;
     if (most)
         p[0] = odd[most - 1] * s;
-    long double along = 0;
+    Quad along = 0;
     for (int i = 0; i < 4; ++i)
         along += p[i] * before[i];
     for (int i = 0; along < 0 && i < 4; ++i)
@@ -82,12 +83,11 @@ static void euler_of(const long double A[9], const long double before[4], long d
 }
 
 /* The numbers of a subset's motion at unit rate, of which `last` has those found before. */
-static void numbers_of(const Fit *fit, const long double *motion, const long double *q, const long double *last,
-                       long double *out)
+static void numbers_of(const Fit *fit, const Quad *motion, const Quad *q, const Quad *last, Quad *out)
 {
     const int size = fit->formula->layout.motion_size;
     for (int b = 0; b < fit->w->first->bodies; ++b, out += BODY_NUMBERS, last += BODY_NUMBERS) {
-        const long double *m = motion + (size_t)(b * size);
+        const Quad *m = motion + (size_t)(b * size);
         for (int i = 0; i < 3; ++i) {
             out[i] = m[MOTION_C + i];
             out[13 + i] = m[MOTION_ALPHA + i];
@@ -111,10 +111,10 @@ static const char *bodies_text(const Work *w, int member)
 }
 
 /* The value of the coordinate at a point of the sweep: NODES, or POINTS. */
-static long double value_at(const Fit *fit, int member, bool nodes, int i)
+static Quad value_at(const Fit *fit, int member, bool nodes, int i)
 {
-    const long double low = fit->low[member], high = fit->high[member], pi = 3.14159265358979323846264338327950288L;
-    const long double t = nodes ? -cosl(pi * (2 * i + 1) / (2 * NODES)) : -1 + 2.0L * i / (POINTS - 1);
+    const Quad low = fit->low[member], high = fit->high[member];
+    const Quad t = nodes ? -fit->cosine[2 * i + 1] : -1 + (Quad)(2 * i) / (POINTS - 1);
     return !nodes && i == POINTS - 1 ? high : (low + high) / 2 + (high - low) / 2 * t;
 }
 
@@ -125,7 +125,7 @@ static void sweep(Fit *fit, Exact *exact, int member)
     const Work *w = fit->w;
     const int s = w->class->member[member], numbers = fit->numbers;
     const Coordinate *c = &w->model->coordinate[w->sequence->subset[s].dep[0]];
-    long double last[numbers], out[numbers];
+    Quad last[numbers], out[numbers];
     for (int direction = -1; direction < 2; direction += 2) {
         exact_reset(exact);
         memset(last, 0, sizeof last);
@@ -133,7 +133,7 @@ static void sweep(Fit *fit, Exact *exact, int member)
         for (int nodes = 0; nodes < 2; ++nodes) { /* the first one on that side */
             at[nodes] = direction > 0 ? 0 : (nodes ? NODES : POINTS) - 1;
             while (at[nodes] >= 0 && at[nodes] < (nodes ? NODES : POINTS) &&
-                   direction * (value_at(fit, member, nodes, at[nodes]) - (long double)c->design) < 0)
+                   direction * (value_at(fit, member, nodes, at[nodes]) - (Quad)c->design) < 0)
                 at[nodes] += direction;
         }
         for (;;) {
@@ -143,7 +143,7 @@ static void sweep(Fit *fit, Exact *exact, int member)
             int nodes = left[1];
             if (left[0] && left[1])
                 nodes = direction * (value_at(fit, member, 1, at[1]) - value_at(fit, member, 0, at[0])) < 0;
-            const long double x = value_at(fit, member, nodes, at[nodes]);
+            const Quad x = value_at(fit, member, nodes, at[nodes]);
             const char *lost = exact_solve(exact, s, x);
             if (lost)
                 diag_fail(c->at,
@@ -154,8 +154,8 @@ static void sweep(Fit *fit, Exact *exact, int member)
                           "%s at %s = %.6g, within its range [%g, %g]: the pose of %s is no polynomial of it there",
                           lost, c->name, (double)x, c->range[0], c->range[1], bodies_text(w, member));
             numbers_of(fit, exact_numbers(exact, s), exact_pose(exact, s), last, out);
-            long double *to = nodes ? fit->node + ((size_t)member * NODES + (size_t)at[1]) * (size_t)numbers
-                                    : fit->point + ((size_t)member * POINTS + (size_t)at[0]) * (size_t)numbers;
+            Quad *to = nodes ? fit->node + ((size_t)member * NODES + (size_t)at[1]) * (size_t)numbers
+                             : fit->point + ((size_t)member * POINTS + (size_t)at[0]) * (size_t)numbers;
             memcpy(to, out, sizeof out);
             memcpy(last, out, sizeof last);
             at[nodes] += direction;
@@ -163,14 +163,14 @@ static void sweep(Fit *fit, Exact *exact, int member)
     }
     /* both sides begin at the design, but Euler parameters have two signs */
     for (int b = 0; b < w->first->bodies; ++b) {
-        const long double *p = fit->point + (size_t)member * POINTS * (size_t)numbers + (size_t)(BODY_NUMBERS * b + 3);
+        const Quad *p = fit->point + (size_t)member * POINTS * (size_t)numbers + (size_t)(BODY_NUMBERS * b + 3);
         for (int nodes = 0; nodes < 2; ++nodes)
             for (int i = 0; i < (nodes ? NODES : POINTS); ++i) {
-                long double *own = (nodes ? fit->node + ((size_t)member * NODES + (size_t)i) * (size_t)numbers
-                                          : fit->point + ((size_t)member * POINTS + (size_t)i) * (size_t)numbers) +
-                                   (BODY_NUMBERS * b + 3);
-                const long double *before = nodes || i == 0 ? p : own - numbers;
-                long double along = 0;
+                Quad *own = (nodes ? fit->node + ((size_t)member * NODES + (size_t)i) * (size_t)numbers
+                                   : fit->point + ((size_t)member * POINTS + (size_t)i) * (size_t)numbers) +
+                            (BODY_NUMBERS * b + 3);
+                const Quad *before = nodes || i == 0 ? p : own - numbers;
+                Quad along = 0;
                 for (int j = 0; j < 4; ++j)
                     along += own[j] * before[j];
                 for (int j = 0; along < 0 && j < 4; ++j)
@@ -183,38 +183,37 @@ static void sweep(Fit *fit, Exact *exact, int member)
  * turns at unit rate too, so that motions along straight lines have a scale. */
 static void set_scales(Fit *fit)
 {
-    const long double size = fit->formula->size;
-    long double most[KINDS] = {0};
+    const Quad size = fit->formula->size;
+    Quad most[KINDS] = {0};
     for (size_t i = 0; i < (size_t)(fit->w->class->members * POINTS); ++i)
         for (int j = 0; j < fit->numbers; ++j)
-            most[kind_of(j)] = fmaxl(most[kind_of(j)], fabsl(fit->point[i * (size_t)fit->numbers + (size_t)j]));
+            most[kind_of(j)] = quad_max(most[kind_of(j)], quad_abs(fit->point[i * (size_t)fit->numbers + (size_t)j]));
     fit->scale[KIND_PLACE] = size;
     fit->scale[KIND_ROTATION] = 1;
-    fit->scale[KIND_TURN] = fmaxl(most[KIND_TURN], most[KIND_GLIDE] / size);
+    fit->scale[KIND_TURN] = quad_max(most[KIND_TURN], most[KIND_GLIDE] / size);
     fit->scale[KIND_GLIDE] = size * fit->scale[KIND_TURN];
-    fit->scale[KIND_ALPHA] =
-        fmaxl(fmaxl(most[KIND_ALPHA], most[KIND_ACCELERATION] / size), fit->scale[KIND_TURN] * fit->scale[KIND_TURN]);
+    fit->scale[KIND_ALPHA] = quad_max(quad_max(most[KIND_ALPHA], most[KIND_ACCELERATION] / size),
+                                      fit->scale[KIND_TURN] * fit->scale[KIND_TURN]);
     fit->scale[KIND_ACCELERATION] = size * fit->scale[KIND_ALPHA];
 }
 
 /* Coefficients of a number's Chebyshev series, [NODES]. */
-static void series(const Fit *fit, int member, int number, long double *c)
+static void series(const Fit *fit, int member, int number, Quad *c)
 {
-    const long double pi = 3.14159265358979323846264338327950288L;
     for (int k = 0; k < NODES; ++k) {
-        long double sum = 0;
+        Quad sum = 0;
         for (int i = 0; i < NODES; ++i)
             sum += fit->node[((size_t)member * NODES + (size_t)i) * (size_t)fit->numbers + (size_t)number] *
-                   cosl(pi * k * (2 * i + 1) / (2 * NODES));
+                   fit->cosine[k * (2 * i + 1) % (4 * NODES)];
         c[k] = (k ? 2 : 1) * sum / NODES * (k % 2 ? -1 : 1);
     }
 }
 
 /* From a Chebyshev series up to a degree to powers of t. */
-static void powers(const long double *c, int degree, double *out)
+static void powers(const Quad *c, int degree, double *out)
 {
-    long double before[DEGREE_MOST + 1] = {1}, now[DEGREE_MOST + 1] = {0, 1}, next[DEGREE_MOST + 1],
-                                     sum[DEGREE_MOST + 1] = {c[0]};
+    Quad before[DEGREE_MOST + 1] = {1}, now[DEGREE_MOST + 1] = {0, 1}, next[DEGREE_MOST + 1],
+                              sum[DEGREE_MOST + 1] = {c[0]};
     for (int k = 1; k <= degree; ++k) {
         for (int i = 0; i <= k; ++i)
             sum[i] += c[k] * now[i];
@@ -231,17 +230,17 @@ static void powers(const long double *c, int degree, double *out)
 static bool fit_numbers(Fit *fit, double bound)
 {
     const int members = fit->w->class->members;
-    long double c[members][NODES];
+    Quad c[members][NODES];
     for (int j = 0; j < fit->numbers; ++j) {
-        const long double scale = fit->scale[kind_of(j)];
+        const Quad scale = fit->scale[kind_of(j)];
         int degree = -1; /* a number that is 0 */
         for (int m = 0; m < members; ++m) {
             series(fit, m, j, c[m]);
-            long double tail = 0;
+            Quad tail = 0;
             int k = NODES - 1;
             for (; k >= 0; --k) {
-                tail += fabsl(c[m][k]);
-                if (tail > (k ? 0.25L * (long double)bound : smallest) * scale)
+                tail += quad_abs(c[m][k]);
+                if (tail > (k ? 0.25 * bound : smallest) * scale)
                     break;
             }
             degree = k > degree ? k : degree;
@@ -259,14 +258,14 @@ static bool fit_numbers(Fit *fit, double bound)
 static double verify(const Fit *fit)
 {
     const int members = fit->w->class->members;
-    long double worst = 0;
+    Quad worst = 0;
     for (int m = 0; m < members; ++m) {
         const double middle = (fit->low[m] + fit->high[m]) / 2, slope = 2 / (fit->high[m] - fit->low[m]);
         for (int i = 0; i < POINTS; ++i) {
-            const long double *exact = fit->point + ((size_t)m * POINTS + (size_t)i) * (size_t)fit->numbers;
+            const Quad *exact = fit->point + ((size_t)m * POINTS + (size_t)i) * (size_t)fit->numbers;
             const double x = (double)value_at(fit, m, false, i), t = (x - middle) * slope;
             /* x is rounded: its effect on a number is that number's derivative times the difference */
-            const long double off = (long double)x - value_at(fit, m, false, i);
+            const Quad off = (Quad)x - value_at(fit, m, false, i);
             for (int j = 0; j < fit->numbers; ++j) {
                 const double *a = fit->power + ((size_t)j * (size_t)members + (size_t)m) * (DEGREE_MOST + 1);
                 double value = 0, derivative = 0;
@@ -274,8 +273,8 @@ static double verify(const Fit *fit)
                     derivative = derivative * t + value;
                     value = value * t + a[k];
                 }
-                const long double error = fabsl(value - exact[j] - (long double)(derivative * slope) * off);
-                worst = fmaxl(worst, error / fit->scale[kind_of(j)]);
+                const Quad error = quad_abs(value - exact[j] - (Quad)(derivative * slope) * off);
+                worst = quad_max(worst, error / fit->scale[kind_of(j)]);
             }
         }
     }
@@ -431,8 +430,8 @@ void subset_polynomial(Work *w, Formula *formula, Formula *const *made, const Sa
         formula->exact_because = "reactions of its joints are asked for, which need factors";
         return;
     }
-    if (LDBL_MANT_DIG < 64) {
-        formula->exact_because = "gicgen was built where long double has too few digits to fit polynomials";
+    if (QUAD_BITS < 113) {
+        formula->exact_because = "gicgen was built where there are no numbers of quad precision";
         return;
     }
     const Coordinate *c = &w->model->coordinate[w->first->dep[0]];
@@ -445,6 +444,10 @@ void subset_polynomial(Work *w, Formula *formula, Formula *const *made, const Sa
                   bodies_text(w, 0), c->name);
     Fit fit = {.w = w, .formula = formula, .numbers = BODY_NUMBERS * w->first->bodies};
     const size_t numbers = (size_t)fit.numbers, all = (size_t)members;
+    for (int i = 0; i < 4 * NODES; ++i) {
+        Quad sine;
+        quad_sincos(quad_pi() * i / (2 * NODES), &sine, &fit.cosine[i]);
+    }
     fit.low = pool_alloc(w->pool, all * sizeof *fit.low);
     fit.high = pool_alloc(w->pool, all * sizeof *fit.high);
     fit.node = pool_alloc(w->pool, all * NODES * numbers * sizeof *fit.node);
