@@ -50,6 +50,8 @@ Quad quad_atan2(Quad y, Quad x)
 
 Quad quad_exp(Quad a)
 {
+    if (a < 0)
+        return 1 / quad_exp(-a);
     const Quad share = a / 1024;
     Quad sum = 0; /* exp(share) - 1 */
     for (int k = 24; k >= 1; --k)

@@ -20,6 +20,8 @@ typedef long double Quad; /* too few: whoever needs them looks at QUAD_BITS */
 #define QUAD_BITS LDBL_MANT_DIG
 #endif
 
+#define QUAD_EPSILON ((Quad)0x1p-112) /* twice what sums, products and quotients round by at most */
+
 static inline Quad quad_abs(Quad a)
 {
     return a < 0 ? -a : a;

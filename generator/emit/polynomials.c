@@ -28,18 +28,22 @@ void write_polynomials(const Generation *g, Text *out)
     text_print(
         out,
         " *\n * Polynomials (--recovery polynomial) in place of Newton's iteration while a coordinate is within its\n"
-        " * range, now and at the end of the step. Bound: of errors of places relative to the subset's size, of Euler\n"
-        " * parameters, and of unit velocities and accelerations relative to the largest of their kind. Verified in\n"
-        " * double precision against solutions in quad precision at the stated number of points of each range;\n"
-        " * that series end below the bound is found from their coefficients, not proved between points.\n");
+        " * range, now and at the end of the step. Bound: of errors of places relative to the subset's size, of "
+        "rotation\n"
+        " * matrices, and of unit velocities and accelerations relative to the largest of their kind. Fitted in quad\n"
+        " * precision. Proved for all of the range by interval arithmetic, where each operation may round as double\n"
+        " * precision does, and compared with solutions of the equations at points.\n");
     for (int c = 0; c < g->sequence->classes; ++c) {
         const Class *class = &g->sequence->class[c];
         const Formula *f = g->plan->formula[c];
         const Polynomial *p = f->polynomial;
         if (p)
             text_print(
-                out, " *   '%s': of %s;\n *       degree at most %d, bound %g, largest error found %.2g at %d points\n",
-                class->name, members_text(g, class, p), p->degree, p->bound, p->worst, p->points);
+                out,
+                " *   '%s': of %s;\n *       degree at most %d, bound %g, proved %.2g by %d intervals, largest error"
+                " found %.2g at %d points\n",
+                class->name, members_text(g, class, p), p->degree, p->bound, p->most, p->intervals, p->worst,
+                p->points);
         else if (f->exact_because)
             text_print(out, " *   '%s': none, for %s\n", class->name, f->exact_because);
     }

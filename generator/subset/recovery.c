@@ -584,13 +584,16 @@ static Work held(Work *w)
 }
 
 /* What is needed to differentiate the poses that Newton's iteration finds. */
-static const Implicit *implicit_new(const Work *w, const Factors *factors, const Ex *found)
+static const Implicit *implicit_new(const Work *w, const Row *row, const Factors *factors, const Ex *found)
 {
     Implicit *implicit = pool_alloc(w->pool, sizeof *implicit);
-    Ex *value = pool_alloc(w->pool, (size_t)w->n * sizeof *value);
-    for (int r = 0; r < w->n; ++r)
-        value[r] = w->row[r].value;
-    *implicit = (Implicit){.n = w->n, .value = value, .factors = factors, .found = found};
+    Ex *value = pool_alloc(w->pool, (size_t)w->n * sizeof *value),
+       *whole = pool_alloc(w->pool, (size_t)w->n * sizeof *whole);
+    for (int r = 0; r < w->n; ++r) {
+        value[r] = row[r].value;
+        whole[r] = w->row[r].value;
+    }
+    *implicit = (Implicit){.n = w->n, .value = value, .whole = whole, .factors = factors, .found = found};
     return implicit;
 }
 
@@ -607,7 +610,7 @@ static Formula *formulate_newton(Work *w, Solve solve)
     Ex determinant = determinant_check(&found, formula, factors, false);
     dag_section(w->dag, "pose: the last correction");
     make_step(&found, factors, &formula->solve, q);
-    formula->implicit = implicit_new(&found, factors, q);
+    formula->implicit = implicit_new(w, found.row, factors, q);
     Motion *motion = pool_alloc(w->pool, (size_t)bodies * sizeof *motion);
     make_motion(&found, factors, motion);
     determinant_check_ahead(&found, formula, determinant, motion);

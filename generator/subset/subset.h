@@ -172,6 +172,8 @@ int inertia_mass(int deps, int j, int k); /* place of M_jk, j <= k */
 typedef struct Implicit {
     int n;                  /* 6 a body */
     const Ex *value;        /* [n] */
+    const Ex *whole;        /* [n] all equations of joints and coordinates, also those that hold by how `found` and the
+                             * motions are made */
     const Factors *factors; /* at the inputs q */
     const Ex *found;        /* [7 bodies] */
 } Implicit;
@@ -185,17 +187,20 @@ typedef struct BodyInertia {
 /* Motions of subsets of one coordinate by polynomials of it within its range: what replaces Newton's iteration there.
  */
 typedef struct Polynomial {
-    Block within; /* four numbers in inside[]: none is negative where coordinate and rate leave the subset within the
-                   * range for the time `ahead` */
-    Ex inside[4]; /* these */
-    Block solve;  /* motion and inertia */
-    Block edge;   /* q at the coordinate, or at the end of its range that it is beyond */
-    int degree;   /* the largest one */
-    int flag;     /* place in a start: 1 if polynomials made it, so that it has neither pose nor factors */
-    double bound; /* of errors of places relative to the subset's size, of Euler parameters, and of unit velocities and
-                   * accelerations relative to the largest ones of their kind */
-    double worst; /* the largest one found, in double precision */
-    int points;   /* at so many points of each range */
+    Block within;  /* four numbers in inside[]: none is negative where coordinate and rate leave the subset within the
+                    * range for the time `ahead` */
+    Ex inside[4];  /* these */
+    Block solve;   /* motion and inertia */
+    Block edge;    /* q at the coordinate, or at the end of its range that it is beyond */
+    int degree;    /* the largest one */
+    int flag;      /* place in a start: 1 if polynomials made it, so that it has neither pose nor factors */
+    double bound;  /* of errors of places relative to the subset's size, of Euler parameters, and of unit velocities and
+                    * accelerations relative to the largest ones of their kind */
+    double worst;  /* the largest one found, in double precision */
+    int points;    /* at so many points of each range */
+    double most;   /* what none exceeds, in double precision and anywhere in the ranges: proved */
+    int intervals; /* of all ranges together, for the proof */
+    const Motion *motion;     /* [bodies] */
     const double *low, *high; /* [members] */
 } Polynomial;
 
