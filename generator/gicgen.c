@@ -220,11 +220,12 @@ static Options read_options(int count, char **word)
         usage_error("--tire-tables is for code: it goes with --batch, --derivatives, --implicit, --lanes, --scene, "
                     "--solve and --recovery, and not with --fmu, --main, --report and what looks at a model",
                     NULL);
-    if (options.recovery == RECOVERY_POLYNOMIAL && (options.task != TASK_GENERATE || options.batch.lanes ||
-                                                    options.scene || options.derivatives || options.implicit))
-        usage_error("--recovery polynomial is for the code of one vehicle in any scene, without --batch, --lanes, "
-                    "--scene, --derivatives, --implicit, --fmu and --report; leave them out, or take --recovery auto",
-                    NULL);
+    if (options.recovery == RECOVERY_POLYNOMIAL &&
+        ((options.task != TASK_GENERATE && options.task != TASK_BATCH) || options.scene))
+        usage_error(
+            "--recovery polynomial is for code in any scene, without --scene, --fmu and --report; leave them out, "
+            "or take --recovery auto",
+            NULL);
     if (options.task == TASK_BATCH && !options.batch.lanes)
         options.batch.lanes = 4;
     return options;

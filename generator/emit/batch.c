@@ -75,16 +75,56 @@ static void write_kept(void *context, Text *out, int indent)
     const Layout *layout = &b->g.plan->formula[b->g.class]->layout;
     line(out, indent, "enum { %s_Q = %d, %s_START = %d, %s_MOTION = %d, %s_INERTIA = %d };", class, 7 * layout->bodies,
          class, layout->start_size, class, layout->bodies * layout->motion_size, class, room(layout->inertia_size));
+    if (b->g.plan->formula[b->g.class]->polynomial)
+        line(out, indent, "enum { %s_MADE = %d }; /* place in a start: 1 if polynomials made it */", class,
+             b->g.plan->formula[b->g.class]->polynomial->flag);
     line(out, indent, "struct {");
     line(out, indent + 4, "gic_lane q[%s_Q], start[%s_START], motion[%s_MOTION], inertia[%s_INERTIA];", class, class,
          class, class);
     line(out, indent, "} kept;");
 }
 
-static const Insertion class_point[] = {{"kept", write_kept}, {NULL, NULL}};
+static void write_made(void *context, Text *out, int indent);
+static void write_cold(void *context, Text *out, int indent);
+static void write_polynomial(void *context, Text *out, int indent);
 
-static const Insertions class_points = {(const char *const[]){"batch_subset.c.in", "batch_closed.c.in", NULL},
+static const Insertion class_point[] = {{"kept", write_kept},
+                                        {"batch made", write_made},
+                                        {"batch cold", write_cold},
+                                        {"batch polynomial", write_polynomial},
+                                        {NULL, NULL}};
+
+static const Insertions class_points = {(const char *const[]){"batch_subset.c.in", "batch_closed.c.in",
+                                                              "batch_made.c.in", "batch_cold.c.in",
+                                                              "batch_polynomial.c.in", NULL},
                                         class_point, &subset_points};
+
+/* A part of the recovery that only classes with polynomials have. */
+static void write_part(BatchGeneration *b, Text *out, const char *part)
+{
+    const Generation *g = &b->g;
+    if (g->plan->formula[g->class]->polynomial)
+        template_expand(g->pool, out, g->templates, part, g->model->name, g->sequence->class[g->class].name,
+                        &class_points, b);
+}
+
+static void write_made(void *context, Text *out, int indent)
+{
+    (void)indent;
+    write_part(context, out, "batch_made.c.in");
+}
+
+static void write_cold(void *context, Text *out, int indent)
+{
+    (void)indent;
+    write_part(context, out, "batch_cold.c.in");
+}
+
+static void write_polynomial(void *context, Text *out, int indent)
+{
+    (void)indent;
+    write_part(context, out, "batch_polynomial.c.in");
+}
 
 static void write_batch_classes(void *context, Text *out, int indent)
 {

@@ -198,6 +198,18 @@ static void write_made(void *context, Text *out, int indent)
     line(out, indent, "start[%d] = R(1.0);", formula_of(context)->polynomial->flag);
 }
 
+/* Derivatives are taken at the pose that was found. */
+static void write_pose_made(void *context, Text *out, int indent)
+{
+    const Generation *g = context;
+    if (!g->style->derivatives && !g->style->implicit)
+        return;
+    line(out, indent, "{");
+    write_edge(context, out, indent + 4);
+    line(out, indent, "}");
+    write_keep(context, out, indent);
+}
+
 static void write_not_made(void *context, Text *out, int indent)
 {
     const int flag = formula_of(context)->polynomial->flag;
@@ -239,6 +251,7 @@ static const Insertion subset_point[] = {{"comment", write_comment},
                                          {"within", write_within},
                                          {"polynomial solve", write_polynomial_solve},
                                          {"made", write_made},
+                                         {"pose made", write_pose_made},
                                          {"not made", write_not_made},
                                          {"edge", write_edge},
                                          {NULL, NULL}};

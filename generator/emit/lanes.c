@@ -251,7 +251,9 @@ static int class_reading(const Generation *g, int class, int known)
 static bool solve_reads(const Formula *f, Array array, int which)
 {
     return block_reads(&f->predict, array, which) || block_reads(&f->chord, array, which) ||
-           block_reads(&f->solve, array, which);
+           block_reads(&f->solve, array, which) ||
+           (f->polynomial &&
+            (block_reads(&f->polynomial->within, array, which) || block_reads(&f->polynomial->solve, array, which)));
 }
 
 static void write_arguments(void *context, Text *out, int indent)
@@ -297,17 +299,34 @@ static void write_kept_start(void *context, Text *out, int indent)
     const char *class = g->sequence->class[g->class].name;
     line(out, indent, "enum { %s_Q = %d, %s_START = %d, %s_MOTION = %d, %s_INERTIA = %d };", class, 7 * layout->bodies,
          class, layout->start_size, class, layout->bodies * layout->motion_size, class, room(layout->inertia_size));
+    if (g->plan->formula[g->class]->polynomial)
+        line(out, indent, "enum { %s_MADE = %d }; /* place in a start: 1 if polynomials made it */", class,
+             g->plan->formula[g->class]->polynomial->flag);
     line(out, indent, "struct {");
     line(out, indent + 4, "gic_row_%d q[%s_Q], start[%s_START], motion[%s_MOTION], inertia[%s_INERTIA];",
          g->style->width, class, class, class, class);
     line(out, indent, "} kept;");
 }
 
-static const Insertion lane_class_point[] = {
-    {"solve arguments", write_arguments}, {"kept", write_kept_start}, {NULL, NULL}};
+static void write_polynomial(void *context, Text *out, int indent);
 
-const Insertions lane_class_points = {(const char *const[]){"lanes_subset.c.in", "lanes_closed.c.in", NULL},
-                                      lane_class_point, &subset_points};
+static const Insertion lane_class_point[] = {{"solve arguments", write_arguments},
+                                             {"kept", write_kept_start},
+                                             {"polynomial lanes", write_polynomial},
+                                             {NULL, NULL}};
+
+const Insertions lane_class_points = {
+    (const char *const[]){"lanes_subset.c.in", "lanes_polynomial.c.in", "lanes_closed.c.in", NULL}, lane_class_point,
+    &subset_points};
+
+static void write_polynomial(void *context, Text *out, int indent)
+{
+    Generation *g = context;
+    (void)indent;
+    if (g->plan->formula[g->class]->polynomial)
+        template_expand(g->pool, out, g->templates, "lanes_polynomial.c.in", g->model->name,
+                        g->sequence->class[g->class].name, &lane_class_points, g);
+}
 
 /* Copy a text with the number of lanes for LANEWIDTH. */
 static void write_with_width(Text *out, const char *s, int lanes)
@@ -359,6 +378,8 @@ void write_lane_class(Generation *g, Text *out)
     style.known_stride = stride;
     style.prefix = usual->prefix;
     style.naming = usual->naming;
+    style.derivatives = usual->derivatives;
+    style.implicit = usual->implicit;
     Text body = {.pool = g->pool};
     g->style = &style;
     g->constants[g->class] = (Constants){0};

@@ -62,7 +62,7 @@ int main(void)
     for (size_t n = 0; n < sizeof place / sizeof *place; ++n)
         for (int way = -1; way < 2; ++way) {
             state[EXACT_STATE_SPRING_R_L] = place[n];
-            state[EXACT_STATE_SPRING_R_R] = 0.74 - place[n];
+            state[EXACT_STATE_SPRING_R_R] = way ? 0.74 - place[n] : 0.37; /* both beyond the range, or one */
             state[EXACT_STATE_SPRING_R_L_RATE] = 0.7 * way;
             state[EXACT_STATE_SPRING_R_R_RATE] = -0.4 * way;
             state[EXACT_STATE_OMEGA_X] = 0.3 * way;
