@@ -220,11 +220,9 @@ static Options read_options(int count, char **word)
         usage_error("--tire-tables is for code: it goes with --batch, --derivatives, --implicit, --lanes, --scene, "
                     "--solve and --recovery, and not with --fmu, --main, --report and what looks at a model",
                     NULL);
-    if (options.recovery == RECOVERY_POLYNOMIAL &&
-        ((options.task != TASK_GENERATE && options.task != TASK_BATCH) || options.scene))
+    if (options.recovery == RECOVERY_POLYNOMIAL && options.task != TASK_GENERATE && options.task != TASK_BATCH)
         usage_error(
-            "--recovery polynomial is for code in any scene, without --scene, --fmu and --report; leave them out, "
-            "or take --recovery auto",
+            "--recovery polynomial is for code, without --fmu and --report; leave them out, or take --recovery auto",
             NULL);
     if (options.task == TASK_BATCH && !options.batch.lanes)
         options.batch.lanes = 4;

@@ -263,7 +263,13 @@ static void narrow_class(Narrower *n, int c)
     formula->solve = partial_block(&p, &general->solve);
     formula->residual = partial_block(&p, &general->residual);
     formula->react = partial_block(&p, &general->react);
-    formula->polynomial = NULL;
+    if (general->polynomial) {
+        Polynomial *polynomial = narrow_copy(n->pool, general->polynomial, 1, sizeof *polynomial);
+        polynomial->within = partial_block(&p, &general->polynomial->within);
+        polynomial->solve = partial_block(&p, &general->polynomial->solve);
+        polynomial->edge = partial_block(&p, &general->polynomial->edge);
+        formula->polynomial = polynomial;
+    }
     n->plan->formula[c] = formula;
     remember(n, class, formula);
 }
@@ -511,6 +517,21 @@ static void mark_inertia(const Block *block, bool *read)
     }
 }
 
+/* Stores of a class's inertia that no member's is read of. */
+static void drop_stores(const Narrower *n, const Class *class, const bool *read, Block *solve)
+{
+    int stores = 0;
+    for (int i = 0; i < solve->stores; ++i) {
+        const int index = element_index(solve->store[i].target, ARRAY_inertia);
+        bool wanted = index < 0;
+        for (int m = 0; m < class->members; ++m)
+            wanted = wanted || read[n->plan->inertia_offset[class->member[m]] + index];
+        if (wanted)
+            solve->store[stores++] = solve->store[i];
+    }
+    solve->stores = stores;
+}
+
 /* Drop the terms of subsets in equations that were removed: those of odd unknowns and of coordinates that stand
  * still. */
 static void drop_inertia(Narrower *n)
@@ -524,17 +545,10 @@ static void drop_inertia(Narrower *n)
         if (block[i])
             mark_inertia(block[i], read);
     for (int c = 0; c < sequence->classes; ++c) {
-        Block *solve = &n->plan->formula[c]->solve;
-        int stores = 0;
-        for (int i = 0; i < solve->stores; ++i) {
-            const int index = element_index(solve->store[i].target, ARRAY_inertia);
-            bool wanted = index < 0;
-            for (int m = 0; m < sequence->class[c].members; ++m)
-                wanted = wanted || read[n->plan->inertia_offset[sequence->class[c].member[m]] + index];
-            if (wanted)
-                solve->store[stores++] = solve->store[i];
-        }
-        solve->stores = stores;
+        const Formula *formula = n->plan->formula[c];
+        drop_stores(n, &sequence->class[c], read, &n -> plan -> formula[c] -> solve);
+        if (formula->polynomial)
+            drop_stores(n, &sequence->class[c], read, &formula -> polynomial -> solve);
     }
 }
 

@@ -404,13 +404,11 @@ static Polynomial *make_blocks(Fit *fit, double bound, double worst)
         for (int i = 0; i < 7; ++i)
             block_store(&found->edge, horner(fit, BODY_NUMBERS * b + 19 + i, t), element_at(ARRAY_q, 7 * b + i));
     dag_section(dag, NULL);
-    found->inside[0] = ex_sub(dag, w->x[0], low);
-    found->inside[1] = ex_sub(dag, high, w->x[0]);
     const Ex later = ex_add(dag, w->x[0], ex_mul(dag, ex_input(dag, element_at(ARRAY_ahead, 0), NULL), w->rate[0]));
-    found->inside[2] = ex_sub(dag, later, low);
-    found->inside[3] = ex_sub(dag, high, later);
+    const Ex inside[] = {ex_sub(dag, w->x[0], low), ex_sub(dag, high, w->x[0]), ex_sub(dag, later, low),
+                         ex_sub(dag, high, later)};
     for (int i = 0; i < 4; ++i)
-        block_store(&found->within, found->inside[i], element_at(ARRAY_inside, i));
+        block_store(&found->within, inside[i], element_at(ARRAY_inside, i));
     for (int j = 0; j < fit->numbers; ++j)
         if (j % BODY_NUMBERS < 19)
             found->degree = fit->degree[j] > found->degree ? fit->degree[j] : found->degree;

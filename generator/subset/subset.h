@@ -189,7 +189,6 @@ typedef struct BodyInertia {
 typedef struct Polynomial {
     Block within;  /* four numbers in inside[]: none is negative where coordinate and rate leave the subset within the
                     * range for the time `ahead` */
-    Ex inside[4];  /* these */
     Block solve;   /* motion and inertia */
     Block edge;    /* q at the coordinate, or at the end of its range that it is beyond */
     int degree;    /* the largest one */

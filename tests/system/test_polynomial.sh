@@ -57,6 +57,13 @@ done
     compile batch -O0 -std=gnu99 -w "$root/tests/data/polynomial/batch.c" "$work/fitted.c" "$work/fitted_batch.c" 2>"$work/err" &&
     "$work/batch" >"$work/out" && awk '{exit !($1 == 0 && $2 > 3 && $3 == 13)}' "$work/out"
 verdict $? "a batch has the bits of vehicles one by one"
+printf '%s\n' 'gicscene: 1' 'duration: 2' 'step: 0.005' 'integrator: ab3' 'initial:' '  position: [0, 0, 0.474472]' '  velocity: [8, 0, 0]' >"$work/straight.scene"
+"$gicgen" --scene "$work/straight.scene" "$work/exact.veh" -o "$work/exact.c" &&
+    "$gicgen" --scene "$work/straight.scene" --recovery polynomial "$work/fitted.veh" -o "$work/fitted.c" &&
+    grep -q "'spring_r_r' is the mirror image of 'spring_r_l'" "$work/fitted.c" && grep -q "inside\[4\]" "$work/fitted.c" &&
+    compile links -w -DSTRAIGHT "$root/tests/data/polynomial/links.c" "$work/exact.c" "$work/fitted.c" "$root/runtime/gic_road.c" &&
+    "$work/links" >"$work/out" && awk '{exit !($1 < 1e-11 && $2 < 1e-12 && $3 == 69)}' "$work/out"
+verdict $? "code for one scene, of half a vehicle"
 GICGEN_PLANT=polynomial "$planted" --recovery polynomial "$work/fitted.veh" -o "$work/off.c" >"$work/out" 2>"$work/err"
 [ $? -eq 1 ] && grep -q "it can't be proved that errors are below 1e-13 with 'spring_r_l' between 0.3" "$work/err" && ! [ -e "$work/off.c" ]
 verdict $? "five links: a coefficient that is wrong"

@@ -66,6 +66,11 @@ int main(void)
             state[EXACT_STATE_SPRING_R_L_RATE] = 0.7 * way;
             state[EXACT_STATE_SPRING_R_R_RATE] = -0.4 * way;
             state[EXACT_STATE_OMEGA_X] = 0.3 * way;
+#ifdef STRAIGHT /* right as left, for a scene in which the vehicle moves straight ahead */
+            state[EXACT_STATE_SPRING_R_R] = place[n];
+            state[EXACT_STATE_SPRING_R_R_RATE] = 0.7 * way;
+            state[EXACT_STATE_OMEGA_X] = 0;
+#endif
             if (exact_rhs(&one, 0, state, left) || fitted_rhs(&other, 0, state, right))
                 return 1;
             double largest = 10;
