@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
- * Quad precision's functions against digits from tables and by the theorems that they obey, within 4e-31 (two functions); Taylor models
- * against values of their functions, in quad precision, at random places: each must be within the model's bound, and
- * the bound small where the function is smooth. */
+ * Quad precision's functions against digits from tables and by the theorems that they obey, within 4e-31 (two
+ * functions); Taylor models against values of their functions, in quad precision, at random places: each must be within
+ * the model's bound, and the bound small where the function is smooth. */
 #include "base/quad.h"
 #include "subset/taylor_model.h"
 
