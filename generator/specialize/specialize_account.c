@@ -123,7 +123,9 @@ static void learn_symmetry(Accounting *a)
 const Formulation *formulate_explained(Pool *pool, const Model *drawn, const Model *model, const Sequence *sequence,
                                        Solve solve, Recovery recovery, const Facts *facts)
 {
-    Accounting a = {pool, model, sequence, solve, recovery, facts, *facts, pool_alloc(pool, sizeof *a.account)};
+    /* figures are those of iterations, which polynomials stand in front of */
+    const Recovery counted = recovery == RECOVERY_POLYNOMIAL ? RECOVERY_AUTO : recovery;
+    Accounting a = {pool, model, sequence, solve, counted, facts, *facts, pool_alloc(pool, sizeof *a.account)};
     a.known.wanted = NULL;
     a.known.fixed = pool_alloc(pool, (size_t)model->inputs + 1);
     a.known.parameter = NULL;
@@ -132,7 +134,7 @@ const Formulation *formulate_explained(Pool *pool, const Model *drawn, const Mod
     a.known.idle = a.known.neutral = false;
     a.known.asymmetry = "it is not looked at yet";
     const Sequence *first = sequence_find(pool, drawn);
-    add_row(&a, formulate(pool, model_assemble(pool, drawn, first), first, solve, recovery), "code for any scene", "");
+    add_row(&a, formulate(pool, model_assemble(pool, drawn, first), first, solve, counted), "code for any scene", "");
     learn_massless(&a, drawn);
     if (drawn->free_base != model->free_base || drawn->inputs != model->inputs)
         learn(&a, "equations of a held base and driven coordinates", "the scene is one of a rig");
