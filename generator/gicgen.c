@@ -246,18 +246,25 @@ static const Formulation *formulation_of(Pool *pool, const Model *model, const S
                                setting->facts);
 }
 
-/* Polynomials were asked for: end with a message if no subset has any. */
+/* Polynomials were asked for: end with a message if no subset has any, warn of those whose errors could not be bounded.
+ */
 static void check_polynomials(const Model *model, const Formulation *f)
 {
+    const Place at = {model->source, 0, 0};
     const char *because = "it has no subset of one coordinate that takes Newton's iteration";
+    bool any = false;
     for (int c = 0; c < f->sequence->classes; ++c) {
-        if (f->plan->formula[c]->polynomial)
-            return;
+        any = any || f->plan->formula[c]->polynomial;
         if (f->plan->formula[c]->exact_because)
             because = f->plan->formula[c]->exact_because;
     }
-    diag_fail((Place){model->source, 0, 0}, "leave out `--recovery polynomial`",
-              "no subset of the model can be recovered by polynomials: %s", because);
+    if (!any)
+        diag_fail(at, "leave out `--recovery polynomial`", "no subset of the model can be recovered by polynomials: %s",
+                  because);
+    for (int c = 0; c < f->sequence->classes; ++c)
+        if (f->plan->formula[c]->unproved)
+            diag_warn(at, "none is needed; a shorter range may bring polynomials", "'%s' keeps Newton's iteration: %s",
+                      f->sequence->class[c].name, f->plan->formula[c]->exact_because);
 }
 
 /* FILE.c and FILE.h; the code includes <model>.h, so the names must agree. */

@@ -306,8 +306,8 @@ static Ex horner(const Fit *fit, int number, Ex t)
     for (int k = fit->degree[number]; k >= 0; --k) {
         for (int m = 0; m < members; ++m)
             value[m] = fit->power[((size_t)number * (size_t)members + (size_t)m) * (DEGREE_MOST + 1) + (size_t)k];
-        for (int m = 0; k == 1 && number == 2 && m < members && planted("polynomial"); ++m)
-            value[m] += 2e-13 * fit->formula->size; /* twice the bound of a place: only the proof sees it */
+        for (int m = 0; k == 2 && number < 7 && m < members && planted("polynomial"); ++m)
+            value[m] += 2e-13 * (double)fit->scale[kind_of(number)]; /* twice the bound: only the proof sees it */
         sum = ex_add(w->dag, ex_mul(w->dag, sum, t), constant(w, value, number_name(w, number, k)));
     }
     return sum;
@@ -475,6 +475,7 @@ void subset_polynomial(Work *w, Formula *formula, Formula *const *made, const Sa
     const char *gap = polynomial_prove(w, formula, found, exact_new(w, made, formula, sampling), scale);
     if (gap) {
         formula->exact_because = gap;
+        formula->unproved = true;
         return;
     }
     formula->polynomial = found;

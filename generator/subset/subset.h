@@ -229,6 +229,7 @@ typedef struct Formula {
     const Implicit *implicit;      /* NULL: closed */
     struct Polynomial *polynomial; /* NULL: none */
     const char *exact_because;     /* why there is none although polynomials are asked for; NULL: other reasons */
+    bool unproved;                 /* since a bound was not proved */
     int derived;                   /* numbers d[] that follow tunable parameters */
     Ex *derived_of;                /* [derived][members] their formulas */
 } Formula;

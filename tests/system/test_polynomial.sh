@@ -67,6 +67,10 @@ verdict $? "code for one scene, of half a vehicle"
 GICGEN_PLANT=polynomial "$planted" --recovery polynomial "$work/fitted.veh" -o "$work/off.c" >"$work/out" 2>"$work/err"
 [ $? -eq 1 ] && grep -q "it can't be proved that errors are below 1e-13 with 'spring_r_l' between 0.3" "$work/err" && ! [ -e "$work/off.c" ]
 verdict $? "five links: a coefficient that is wrong"
+GICGEN_PLANT=polynomial "$planted" --recovery polynomial "$root/models/semitrailer.veh" -o "$work/semitrailer.c" >"$work/out" 2>"$work/err" &&
+    grep -q "semitrailer.veh: warning: 'pitman' keeps Newton's iteration: it can't be proved" "$work/err" &&
+    grep -q "'pitman': none, for it can't be proved" "$work/semitrailer.c" && grep -q "'nut': of steering in" "$work/semitrailer.c"
+verdict $? "one of two that can't be proved"
 sed "s/^model: .*/model: five_link/" "$root/models/five_link.veh" >"$work/five_link.veh"
 "$gicgen" "$work/five_link.veh" -o "$work/five_link.c" && cmp -s "$work/five_link.c" "$root/generated/five_link.c"
 verdict $? "the same bytes without the option"
