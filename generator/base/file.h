@@ -42,6 +42,8 @@ char *file_read(Pool *pool, const char *path, size_t most, size_t *size);
 /* Open a new file beside `path` for writing. Its name is random (*name) and did not exist, so no link is followed. NULL
  * with errno set if it can't be made. The caller renames it to `path` or removes it. */
 FILE *temporary_open(Pool *pool, const char *path, char **name);
+/* Remove temporary files of `path` that programs which were killed have left. For one that alone may write it now. */
+void temporary_clear(Pool *pool, const char *path);
 
 enum { SIGNAL_MOST = 64 /* the largest signal number */ };
 

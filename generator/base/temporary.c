@@ -3,15 +3,18 @@
 #define _DEFAULT_SOURCE /* mkstemps */
 #include "base/file.h"
 
+#include <dirent.h>
 #include <errno.h>
 #include <stdlib.h>
+#include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+static const char letters[] = "XXXXXX", end[] = ".tmp";
+
 FILE *temporary_open(Pool *pool, const char *path, char **name)
 {
-    static const char end[] = ".tmp";
-    *name = pool_print(pool, "%s.XXXXXX%s", path, end);
+    *name = pool_print(pool, "%s.%s%s", path, letters, end);
     const int file = mkstemps(*name, sizeof end - 1);
     if (file < 0)
         return NULL;
@@ -26,6 +29,26 @@ FILE *temporary_open(Pool *pool, const char *path, char **name)
         errno = reason;
     }
     return stream;
+}
+
+/* True if the name is that of a temporary file of `of`. */
+static bool is_temporary(const char *name, const char *of)
+{
+    const size_t head = strlen(of), size = head + 1 + strlen(letters) + strlen(end);
+    return strlen(name) == size && !strncmp(name, of, head) && name[head] == '.' &&
+           !strcmp(name + size - strlen(end), end);
+}
+
+void temporary_clear(Pool *pool, const char *path)
+{
+    const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
+    const char *folder = slash ? pool_print(pool, "%.*s", (int)(slash + 1 - path), path) : ".";
+    DIR *all = opendir(folder);
+    for (const struct dirent *entry; all && (entry = readdir(all));)
+        if (is_temporary(entry->d_name, name))
+            unlink(pool_print(pool, "%s/%s", folder, entry->d_name));
+    if (all)
+        closedir(all);
 }
 
 /* True if a signal ends the program by default and can come at any time. */

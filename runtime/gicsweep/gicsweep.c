@@ -76,7 +76,7 @@ typedef struct Asked {
     const char **vary, **metric, **front; /* [count of words] */
     const char *planned, *merged;         /* folders of --slurm and --merge; NULL: not asked for */
     double chunk;                         /* s; 0: not given */
-    bool series, quiet;
+    bool series, quiet, seeded;
 } Asked;
 
 static void read_vary(void *asked, char *word)
@@ -111,6 +111,7 @@ static void read_sobol(void *asked, char *word)
 
 static void read_seed(void *asked, char *word)
 {
+    ((Asked *)asked)->seeded = true;
     ((Asked *)asked)->sweep.seed =
         (uint64_t)usage_whole("gicsweep", "--seed takes a whole number from 0 on, not", word, 0, INT64_MAX);
 }
@@ -212,6 +213,8 @@ static void read_command_line(Asked *asked, int count, char **word)
         usage_fail("gicsweep", "results go into a file, so that a stopped sweep can go on, not to", sweep->results);
     if (sweep->sobol && sweep->latin)
         usage_fail("gicsweep", "--latin or --sobol, not both", NULL);
+    if (asked->seeded && !sweep->latin)
+        usage_fail("gicsweep", "--seed goes with --latin: other runs have no random numbers", NULL);
     if (sweep->sobol && !sweep->metrics)
         usage_fail("gicsweep", "--sobol needs metrics: --metric NAME=FUNCTION(FORMULA)", NULL);
     if (sweep->report && !sweep->metrics)

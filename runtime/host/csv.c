@@ -10,6 +10,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 /* ---- writing -------------------------------------------------------------------------------------------- */
@@ -92,6 +93,9 @@ Csv csv_open(Pool *pool, const char *path)
     if (!strcmp(path, "-"))
         return csv;
     const bool special = file_is_special(path);
+    struct stat is;
+    if (!stat(path, &is) && S_ISDIR(is.st_mode))
+        diag_fail(program_place(), "write a file's name behind it", "can't write %s: it is a folder", path);
     Unfinished *unfinished = watch(path);
     char *name = NULL;
     csv.file = special ? fopen(path, "w") : temporary_open(pool, path, &name);

@@ -51,7 +51,8 @@ static void find_signals(Pool *pool, Model *model, const Model *from, const Sign
         *POOL_PUSH(pool, known, count) = from->signal[i].name;
     for (int i = 0; i < from->outputs; ++i)
         for (int k = 0; k < from->output[i].count; ++k)
-            *POOL_PUSH(pool, known, count) = from->output[i].component[k];
+            if (!from->output[i].hidden && from->output[i].type != OUTPUT_SIGNAL) /* which stand there already */
+                *POOL_PUSH(pool, known, count) = from->output[i].component[k];
     for (int i = 0; i < reads->count; ++i) {
         const SignalRead *read = &reads->read[i];
         read->law->index = find_signal(model, from, read->name);

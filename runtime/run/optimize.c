@@ -215,6 +215,21 @@ static void print(const Search *s, const char *number)
     diag_text(text.s);
 }
 
+/* Where something is left that a number does not move at first, the search has had nothing to go by. */
+static void warn_flat(const Search *s, Place at)
+{
+    const int rows = s->times * s->formulas;
+    for (int k = 0; k < s->variables && optimize_size(s, s->rest) > 0; ++k) {
+        double most = 0;
+        for (int i = 0; i < rows; ++i)
+            most = fmax(most, fabs(s->jacobian[i * s->variables + k]));
+        if (most * (s->high[k] - s->low[k]) <= 0)
+            diag_warn(at, "give it another value in the scene to begin with, or leave it out",
+                      "%s does not move the formulas at %.9g: it has no influence, or a largest value is there",
+                      s->variable[k].name, s->x[k]);
+    }
+}
+
 void optimize_report(Pool *pool, const Model *model, const Scene *scene, const Request *request)
 {
     Search s = open(pool, model, scene, request);
@@ -225,6 +240,7 @@ void optimize_report(Pool *pool, const Model *model, const Scene *scene, const R
     if (!search(&s))
         diag_warn((Place){scene->source, 0, 0}, "begin with the numbers that it found, or with narrower bounds",
                   "after %d runs the numbers still move", s.runs);
+    warn_flat(&s, (Place){scene->source, 0, 0});
     const char *number =
         pool_print(pool, "%s of %s from %.6g to %.6g, in %d runs", s.peak ? "largest magnitude" : "root mean square",
                    s.text, optimize_size(&s, s.start), optimize_size(&s, s.rest), s.runs);

@@ -79,6 +79,9 @@ const Model *metric_read(Pool *pool, const Model *model, const char *word, Metri
     for (int k = 0; k < METRIC_KINDS && !inside; ++k)
         if ((inside = formula_inside(pool, call, kind_name[k])))
             metric->kind = (MetricKind)k;
+    for (int k = 0; k < METRIC_KINDS && !inside; ++k)
+        if (!strncmp(call, kind_name[k], strlen(kind_name[k])) && call[strlen(kind_name[k])] == '(')
+            refuse("parentheses do not match in", word);
     if (!inside)
         refuse(
             "--metric knows end, min, max, mean, rms, rms_wk, rms_wd, integral, time_of_min, time_of_max, crossing and "
@@ -87,14 +90,15 @@ const Model *metric_read(Pool *pool, const Model *model, const char *word, Metri
     const char *comma = comma_of(inside);
     if (comma && metric->kind != METRIC_RMS && metric->kind != METRIC_CROSSING)
         refuse("only rms takes a weight and crossing a level after a comma, not", word);
+    const char *option = pool_print(pool, "--metric %s", metric->name);
     const char *formula = trimmed(pool, inside, comma ? (size_t)(comma - inside) : strlen(inside));
     if (!metric->unit)
         metric->unit = unit_of(model, metric->kind, formula);
     metric->signal = model->output_components;
-    model = formula_output(pool, model, "--metric", pool_print(pool, "metric %d", metric->signal), formula);
+    model = formula_output(pool, model, option, pool_print(pool, "metric %d", metric->signal), formula);
     if (comma) {
         metric->other = model->output_components;
-        model = formula_output(pool, model, "--metric", pool_print(pool, "metric %d", metric->other), comma + 1);
+        model = formula_output(pool, model, option, pool_print(pool, "metric %d", metric->other), comma + 1);
     }
     return model;
 }

@@ -42,7 +42,7 @@ void vary_read(Pool *pool, SweepPlan *plan, const char *word)
         next = end + 1;
         vary.count = strtoll(next, &end, 10);
         if (end == next || *end || vary.count < 1 || vary.count > SWEEP_RUNS_MOST)
-            refuse("a count must be a whole number from 1 on in", word);
+            refuse("a count must be a whole number from 1 to 10000000 in", word);
     }
     *POOL_PUSH(pool, plan->vary, plan->varied) = vary;
 }

@@ -68,10 +68,12 @@ void sobol_row(Sobol *s, const char *row)
 static void estimate(int varied, int64_t count, const double *value, const int64_t *pick, double *first, double *total)
 {
     const int each = varied + 2;
-    double mean = 0, variance = 0;
+    double mean = 0, variance = 0, least = INFINITY, most = -INFINITY;
     for (int64_t j = 0; j < count; ++j) {
         const double *f = value + (pick ? pick[j] : j) * each;
         mean += (f[0] + f[1]) / (double)(2 * count);
+        least = fmin(least, fmin(f[0], f[1]));
+        most = fmax(most, fmax(f[0], f[1]));
     }
     for (int i = 0; i < varied; ++i)
         first[i] = total[i] = 0;
@@ -85,9 +87,9 @@ static void estimate(int varied, int64_t count, const double *value, const int64
             total[i] += way * way / (double)(2 * count);
         }
     }
-    for (int i = 0; i < varied; ++i) {
-        first[i] = variance > 0 ? first[i] / variance : (double)NAN;
-        total[i] = variance > 0 ? total[i] / variance : (double)NAN;
+    for (int i = 0; i < varied; ++i) { /* of equal numbers rounding leaves a variance, too */
+        first[i] = most > least ? first[i] / variance : (double)NAN;
+        total[i] = most > least ? total[i] / variance : (double)NAN;
     }
 }
 

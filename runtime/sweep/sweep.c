@@ -337,6 +337,8 @@ void sweep_all(Pool *pool, const Model *model, const Scene *scene, const SweepRe
                                  : pool_print(pool, "%s.journal", request->results);
     Journal journal = journal_open(pool, path, plan.part ? folder_key(pool, &parts, plan.part) : parts.key, sweep.form,
                                    plan.first, plan.count);
+    if (!plan.part) /* under the journal's lock */
+        temporary_clear(pool, request->results);
     const int64_t before = journal.finished;
     const double start = clock_seconds(CLOCK_MONOTONIC);
     sweep.journal = &journal;

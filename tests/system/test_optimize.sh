@@ -28,6 +28,17 @@ check 'a bound' prints '^parameter/link_in_y .* m, at a bound$'
 run --optimize 'maximum(wheel.yaw)' "$corner" "$travel" parameter/link_in_z=0.13:0.14
 check 'a largest magnitude' prints '^corner: largest magnitude of wheel.yaw from 0.0011283 to '
 
+# a start at which nothing can be known: where a square is least, what is left is most
+flat=$work/flat.veh
+sed 's/^parameters:/&\n  flat: {value: 0, unit: "1", tunable: true}\n  idle: {value: 0, unit: "1", tunable: true}/' "$corner" >"$flat"
+grep -q '^  flat:' "$flat" || echo "FAILED: parameters of $corner"
+run --optimize 'flat^2 - 4' "$flat" "$travel" parameter/flat=-5:5
+check 'a largest value' says 'parameter/flat does not move the formulas at 0: it has no influence, or a largest value is there'
+run --optimize 'flat - 4' "$flat" "$travel" parameter/flat=-5:5
+check 'it moves them: no warning' eval '! grep -q "does not move" "$work/err"'
+run --optimize 'flat - 4' "$flat" "$travel" parameter/flat=-1:1 parameter/idle=-1:1
+check 'no influence' says 'parameter/idle does not move the formulas at 0'
+
 # ---- what is refused
 ends() { exits "$1" && says "$2" && [ ! -e "$work/no.csv" ]; }
 mistake() { # STATUS TEXT WORD...: said, and no file is left

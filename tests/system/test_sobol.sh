@@ -153,6 +153,19 @@ product() {
 check "the g-function" eval 'product --sobol 2048 -o "$work/g.csv" >"$work/g.txt"'
 check "has the indices of its closed form" indices g "$work/g.csv" "$work/g.txt"
 
+# constants that are no sums of powers of 2: rounding of their mean is no variance
+sobol --sobol 16 --vary p1=0:1 --vary p2=0:1 --metric 'a=end(0.1)' --metric 'b=end(7.3)' --metric 'c=end(1e10)' --metric 'd=end(p1)' -o "$work/c.csv" >"$work/c.txt"
+check "what does not vary has no indices" /usr/bin/python3 -c "
+import csv
+rows = list(csv.DictReader(open('$work/c.txt')))
+assert len(rows) == 8 and all((r['first'] == 'nan') == (r['total.low'] == 'nan') == (r['metric'] != 'd') for r in rows), rows"
+sobol --sobol 16 --seed 2 --vary p1=0:1 --metric 'a=end(p1)' -o "$work/no.csv"
+refused=$?
+check "no seed" eval '[ $refused -eq 2 ] && grep -q "seed goes with --latin" "$work/err" && [ ! -e "$work/no.csv" ]'
+: >"$work/old.csv.AbCdEf.tmp"; : >"$work/old.csv.AbCdEfg.tmp"
+sobol --sobol 16 --vary p1=0:1 --metric 'a=end(p1)' -o "$work/old.csv" >"$work/said"
+check "what a killed one has left is taken away" eval '[ -e "$work/old.csv" ] && [ ! -e "$work/old.csv.AbCdEf.tmp" ] && [ -e "$work/old.csv.AbCdEfg.tmp" ]'
+
 # a point of which a run has no number is left out: sqrt(-1)
 sobol --sobol 256 --vary p1=-0.2:1 --vary p2=0:1 --metric 'f=end(sqrt(p1) + p2)' --metric 'none=crossing(time + 1)' -o "$work/n.csv" >"$work/n.txt"
 check "points that have no number are left out" /usr/bin/python3 -c "
