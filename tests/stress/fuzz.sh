@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # fuzz.sh GICGEN RANDOM_VEHICLE: readers of models, formulas, tires, scenes and roads under clang's libFuzzer with
-# sanitizers (tests/fuzz/fuzz.c, which `make fuzz` builds), for SECONDS_EACH (60, short: 15) each, from seeds:
+# sanitizers (tests/fuzz/fuzz.c, which `make fuzz` builds), for SECONDS_EACH (60, short: 10) each, from seeds:
 # tests/fuzz/seeds, the project's own files, sound and broken, and random vehicles, of which 40 reach as many branches
 # as some ten minutes of fuzzing without them. What it made of them is gone afterwards but for findings, which stay in
 # $BUILD/stress/fuzz.
@@ -10,7 +10,7 @@ build=$(dirname "$gicgen")
 fuzz=$build/fuzz/check/fuzz
 random_vehicle=$(realpath "$2")
 cd "$(dirname "$0")/../.." || exit 1
-[ "$STRESS" = short ] && seconds=${SECONDS_EACH:-15} || seconds=${SECONDS_EACH:-60}
+[ "$STRESS" = short ] && seconds=${SECONDS_EACH:-10} || seconds=${SECONDS_EACH:-60}
 found=$build/stress/fuzz
 mkdir -p "$found" || exit 1
 work=$(mktemp -d) || exit 1

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 # test_accelerations.sh GICGEN GICRUN STATES REFERENCE AGREE REFERENCE_LONG: accelerations, poses, reactions of all joints, drive
 # forces, all that wheels tell, rates of fast states, energies and power of generated code against the independent
-# reference in quad precision, at ROWS (default 25; four times that with tires) random states of every model, of a cart
+# reference in quad precision, at ROWS (default 12; four times that with tires) random states of every model, of a cart
 # with every kind of force law and of the HMMWV with a driven rack, with the equations of motion in either form; constraint
 # residuals at the same states; the reduced form also with alike parts side by side in lanes. Each form within half of
 # 1e-12 of the reference: so they agree with each other to 1e-12.
@@ -68,7 +68,7 @@ print("2e-12" if max(x) - min(x) < 10 else "4e-12")' "$work/dump"
 }
 
 for model in "$root"/models/*.veh "$root"/tests/data/laws/*.veh "$work/steered.veh"; do
-    rows=${ROWS:-25}
+    rows=${ROWS:-12}
     tires=false
     tolerance=5e-13
     if "$gicgen" --dump-model "$model" >"$work/dump" &&

@@ -2,11 +2,11 @@
 # SPDX-License-Identifier: MIT
 # test_random_mechanisms.sh RANDOM_VEHICLE GICGEN GICRUN STATES REFERENCE AGREE REFERENCE_LONG GICSWEEP SINGLE: random mechanisms of a few bodies, trees
 # and loops on free and fixed bases, half of whose numbers are such as people write, by every way of generating and every
-# engine, against quad precision, and their runs by energy: MECHANISMS (500) of them, from the seed FIRST (1) on, on
+# engine, against quad precision, and their runs by energy: MECHANISMS (300) of them, from the seed FIRST (1) on, on
 # all processors; tests/lib/mechanisms.sh says how they are judged. `make stress` has 200,000. REFUSALS=ignore: refusals
 # without cause are counted and shown, and are no failures.
 first=${FIRST:-1}
-count=${MECHANISMS:-500}
+count=${MECHANISMS:-300}
 workers=$(nproc)
 work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
