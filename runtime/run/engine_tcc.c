@@ -139,6 +139,8 @@ static void add_host_functions(TCCState *state)
         HOST_FUNCTION(gic_table_value),
         HOST_FUNCTION(gic_restart),
         HOST_FUNCTION(gic_rates_match),
+        HOST_FUNCTION(gic_road_bend),
+        HOST_FUNCTION(gic_road_friction_slope),
     };
     for (size_t i = 0; i < sizeof function / sizeof *function; ++i)
         tcc_add_symbol(state, function[i].name, (const void *)function[i].address);
