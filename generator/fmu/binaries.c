@@ -83,16 +83,18 @@ const char *binaries_add(Members *members, int version, const char *model, const
     const int sources = members->count;
     Text there = {.pool = pool}, missing = {.pool = pool};
     const char *failure = NULL;
+    bool stopped = false; /* by a signal, which ends the program once it is released */
     for (int i = 0; i < sources; ++i)
         if (is_source(&members->member[i], ".c") || is_source(&members->member[i], ".h"))
             if (!put(source_path(pool, folder, &members->member[i]), &members->member[i]))
                 failure = pool_print(pool, "no room for sources in %s", folder);
-    for (int i = 0; i < PLATFORMS && !failure; ++i) {
+    for (int i = 0; i < PLATFORMS && !failure && !stopped; ++i) {
         const Platform *p = &platform[i];
         const char *name = p->name[version == 3], *said = "";
         const char *output = pool_print(pool, "%s/%s.%s", folder, model, p->ending);
         const Members all = {pool, sources, members->member};
         const int status = compile(pool, &all, p, folder, output, &said);
+        stopped = status == PROCESS_INTERRUPTED || interrupt_arrived();
         if (status == 0) {
             size_t size;
             const char *bytes = file_read(pool, output, TABLE_MOST, &size);
@@ -110,7 +112,7 @@ const char *binaries_add(Members *members, int version, const char *model, const
     for (int i = 0; i < sources; ++i)
         if (is_source(&members->member[i], ".c") || is_source(&members->member[i], ".h"))
             unlink(source_path(pool, folder, &members->member[i]));
-    if (!failure)
+    if (!failure && !stopped)
         fprintf(stderr, "%s: FMI %d.0, binaries for%s%s%s\n", path, version, there.size ? there.s : " no platform",
                 missing.size ? "; none for" : "", missing.size ? missing.s : "");
     return failure;

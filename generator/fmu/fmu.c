@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * An FMU: description, sources, binaries, page, picture and licence in one archive. */
 #include "base/file.h"
+#include "base/yaml.h"
 #include "fmu/fmu.h"
 #include "emit/emit.h"
 #include "engine/engine.h"
@@ -14,17 +15,30 @@
 #include <string.h>
 #include <unistd.h>
 
-/* What scenes have that an FMU can't start with. Inputs, drivers and the time they take are the importer's. */
+/* What scenes have that an FMU can't start with or do. Inputs, drivers and the time they take are the importer's. */
 static void check_scene(const Scene *scene)
 {
-    const Place at = {scene->source, 0, 0};
     if (scene->equilibrium)
-        diag_fail(at, "let `gicrun --equilibrium` find it and write the values under `initial`",
+        diag_fail(doc_find(doc_find(scene->root, "initial"), "equilibrium")->at,
+                  "let `gicrun --equilibrium` find it and write the values under `initial`",
                   "an FMU can't start in static equilibrium by itself yet");
     if (scene->road)
-        diag_fail(at, "leave out `road`: the FMU's road is flat at z = 0", "an FMU can't have a road of its own yet");
+        diag_fail(scene_place(scene, "road"), "leave out `road`: the FMU's road is flat at z = 0",
+                  "an FMU can't have a road of its own yet");
     if (scene->rest)
-        diag_fail(at, "leave out `sleep`", "a vehicle in an FMU never sleeps");
+        diag_fail(scene_place(scene, "sleep"), "leave out `sleep`", "a vehicle in an FMU never sleeps");
+    if (scene->method >= METHOD_ADAMS)
+        diag_fail(scene_place(scene, "integrator"),
+                  "write `integrator: ab3`, `rk4`, `ros2`, `ros3` or `imex` and a `step`; in model exchange the "
+                  "importer takes steps of its own",
+                  "co-simulation of an FMU has constant steps, not those of %s", integrator_name(scene->method));
+    if (scene->most_work)
+        diag_fail(scene_place(scene, "most_work"), "leave out `most_work`",
+                  "an FMU does not bound the work of its steps yet");
+    if (scene->actions)
+        diag_fail(scene_place(scene, doc_find(scene->root, "until") ? "until" : "when"),
+                  "leave out `until` and `when`: the importer reads outputs, sets inputs and ends the run",
+                  "an FMU has no conditions");
 }
 
 static const char *embedded_text(const char *name, size_t *size)
@@ -124,7 +138,7 @@ static void add_files(Members *members, int version, const Formulation *f, const
     const Dependence *rate = dependences_of_rates(pool, f);
     const bool shares = generate(pool, f, style, templates, pool_print(pool, "%s.h", name), &c, &h);
     if (scene && scene->spread && !shares)
-        diag_fail((Place){scene->source, 0, 0}, "remove spread_jacobian from the scene",
+        diag_fail(scene_place(scene, "spread_jacobian"), "remove spread_jacobian from the scene",
                   "the Jacobian of this model is not made by shares (models/STIFF.md)");
     Description d = {.pool = pool,
                      .f = f,

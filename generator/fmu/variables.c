@@ -45,6 +45,7 @@ Experiment experiment_of(const Scene *scene)
         experiment.keep = scene_implicit(scene) ? scene->keep : 1;
         experiment.spread = scene_implicit(scene) && scene->spread;
         experiment.steady = scene->steady;
+        experiment.locate = scene->locate;
     }
     return experiment;
 }
@@ -410,6 +411,12 @@ static void add_solver(Making *m, bool implicit, bool shares)
     if (shares) {
         add_step_count(m, 4, "solver.spread_jacobian", "1: steps that keep a Jacobian make the next one by shares", 1,
                        experiment.spread);
+        m->all->variable[m->all->count - 1].least = 0;
+    }
+    if (m->f->contacts) {
+        add_step_count(m, 5, "solver.locate",
+                       "1: steps are made in parts where contacts begin or end, 2: also where loads bend, 0: neither",
+                       2, experiment.locate);
         m->all->variable[m->all->count - 1].least = 0;
     }
 }

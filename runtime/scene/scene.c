@@ -123,10 +123,18 @@ bool scene_implicit(const Scene *scene)
     return method_implicit(scene->method);
 }
 
+Place scene_place(const Scene *scene, const char *key)
+{
+    for (int i = 0; i < scene->root->count; ++i)
+        if (!strcmp(scene->root->key[i]->text, key))
+            return scene->root->key[i]->at;
+    return (Place){scene->source, 0, 0};
+}
+
 void scene_no_auto(const Scene *scene, const char *what)
 {
     if (scene && scene->automatic)
-        diag_fail((Place){scene->source, 0, 0}, "name one; `gicrun` with the scene says which one it takes",
+        diag_fail(scene_place(scene, "integrator"), "name one; `gicrun` with the scene says which one it takes",
                   "%s does not choose an integrator (auto) yet", what);
 }
 
@@ -134,7 +142,7 @@ void scene_no_implicit(const Scene *scene, const char *what)
 {
     scene_no_auto(scene, what);
     if (scene && scene_implicit(scene))
-        diag_fail((Place){scene->source, 0, 0}, "write `integrator: ab3` or `rk4`, with a shorter step",
+        diag_fail(scene_place(scene, "integrator"), "write `integrator: ab3` or `rk4`, with a shorter step",
                   "%s does not take implicit steps (%s) yet", what, integrator_name(scene->method));
 }
 
@@ -634,6 +642,7 @@ static const Scene *scene_of(Pool *pool, const Item *root, const char *path, con
                "driven", "posts", "output_step", "initial", "road", "inputs", "input_file", "driver", "course",
                "parameters", "outputs", "plot", "units", "until", "when");
     scene->source = root->at.source;
+    scene->root = root;
     const Item *version = scene_need(root, "gicscene", "the scene");
     if (doc_number(version, "gicscene") != 1)
         diag_fail(version->at, "write 1, or use a newer gicrun", "this gicrun reads version 1 of the scene format");

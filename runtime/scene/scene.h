@@ -44,6 +44,7 @@ typedef struct ShownUnit {
 
 typedef struct Scene {
     const Source *source;
+    const Item *root;                   /* the file's keys, for messages */
     double duration, step, output_step; /* step is 0 if a scene of variable steps has none */
     int64_t outputs;                    /* output times after the one at 0 */
     int64_t per_output;                 /* constant steps from one output time to the next */
@@ -115,6 +116,8 @@ const char *integrator_name(int32_t method);
 enum { KEEP_MOST = 1000 };               /* steps with one Jacobian */
 bool method_implicit(int32_t method);    /* true for methods with implicit steps: GIC_ROS2, GIC_ROS3, GIC_IMEX */
 bool scene_implicit(const Scene *scene); /* the same of its method */
+/* Where the scene has this key; the file as a whole if it does not. */
+Place scene_place(const Scene *scene, const char *key);
 /* Fail if the scene has the integrator `auto`. what: "a page" */
 void scene_no_auto(const Scene *scene, const char *what);
 /* Fail if the scene has an implicit integrator or `auto`; for what does not take one. what: "a page" */

@@ -165,6 +165,7 @@ void fmu_reset(fmu_instance *instance)
     data->ratio = FMU_START_RATIO;
     data->keep = FMU_START_KEEP;
     data->spread = FMU_START_SPREAD;
+    data->locate = FMU_START_LOCATE;
     data->gear = FMU_START_GEAR;
 }
 
@@ -191,6 +192,7 @@ fmu_result fmu_initialize(fmu_instance *instance)
     if (status != GIC_OK)
         return said(instance, FMU_ERROR, &data->self, "the model can't be set up", status);
     adopt(data);
+    data->self.head.locate = data->locate;
     if (model->implicit) {
         gic_implicit_head *head = (gic_implicit_head *)(void *)((char *)&data->self + model->implicit->head_offset);
         head->keep = data->keep;
@@ -389,6 +391,8 @@ fmu_result fmu_get_integer(fmu_instance *instance, uint32_t reference, int32_t *
         *value = i == FMU_SOLVER_METHOD ? data->method : i == FMU_SOLVER_RATIO ? data->ratio : data->keep;
     } else if (kind == FMU_SOLVER && i == FMU_SOLVER_SPREAD && shares()) {
         *value = data->spread;
+    } else if (kind == FMU_SOLVER && i == FMU_SOLVER_LOCATE && model->contacts) {
+        *value = data->locate;
     } else if (kind == FMU_DISCRETE && model->discrete_count > model->free_base && i == model->free_base) {
         const fmu_result result = fmu_initialize(instance);
         *value = data->self.discrete[i];
@@ -426,6 +430,10 @@ fmu_result fmu_set_integer(fmu_instance *instance, uint32_t reference, int32_t v
         if (value < 0 || value > 1)
             return fmu_say(instance, FMU_DISCARD, "solver.spread_jacobian is 0 or 1, not %d", (int)value);
         data->spread = value;
+    } else if (kind == FMU_SOLVER && i == FMU_SOLVER_LOCATE && model->contacts) {
+        if (value < 0 || value > 2)
+            return fmu_say(instance, FMU_DISCARD, "solver.locate is 0, 1 or 2, not %d", (int)value);
+        data->locate = value;
     } else if (kind == FMU_DISCRETE && model->discrete_count > model->free_base && i == model->free_base) {
         if (value < FMU_LEAST_GEAR || value > FMU_MOST_GEAR)
             return fmu_say(instance, FMU_DISCARD, "there is no gear %d", (int)value);
