@@ -103,7 +103,8 @@ void gic_bumps_bend(const gic_road *road, int32_t lane, gic_real time, gic_real 
     (void)lane;
     (void)time;
     out[0] = out[1] = out[2] = GIC_R(0.0);
-    for (int32_t i = first_bump(bumps, x); i < bumps->count && !(bumps->bump[i].x >= x); ++i) {
+    /* of one that begins at x, too */
+    for (int32_t i = first_bump(bumps, x); i < bumps->count && !(bumps->bump[i].x > x); ++i) {
         const gic_bump *bump = &bumps->bump[i];
         const gic_real wave = TWO_PI / bump->length;
         if (is_on_bump(bump, x, y))

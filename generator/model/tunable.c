@@ -5,6 +5,7 @@
 #include "model/model.h"
 #include "model/tunable.h"
 
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -52,12 +53,35 @@ void tuning_set(Tuning *tuning, const double *at, const Ex *formula, int count)
     }
 }
 
+void tuning_drop(Tuning *tuning, const double *at, int count)
+{
+    int left = 0;
+    for (int i = 0; i < tuning->numbers; ++i) {
+        const uintptr_t place = (uintptr_t)tuning->number[i].at, first = (uintptr_t)at;
+        if (place < first || place >= first + (size_t)count * sizeof *at)
+            tuning->number[left++] = tuning->number[i];
+    }
+    tuning->numbers = left;
+}
+
 void tuning_copy(const Model *model, const double *to, const double *from, int count)
 {
     for (int i = 0; i < count; ++i) {
         Ex formula = tuned_number(model, from + i);
         if (formula)
             tuning_set(model->tuning, to + i, &formula, 1);
+    }
+}
+
+void tuning_copy_all(const Model *model, const void *to, const void *from, size_t bytes)
+{
+    const int numbers = model->tuning ? model->tuning->numbers : 0; /* copies add to them */
+    for (int i = 0; i < numbers; ++i) {
+        const TunedNumber number = model->tuning->number[i];
+        const uintptr_t at = (uintptr_t)number.at, first = (uintptr_t)from;
+        if (at >= first && at < first + bytes)
+            tuning_set(model->tuning, (const double *)(const void *)((const char *)to + (at - first)), &number.formula,
+                       1);
     }
 }
 

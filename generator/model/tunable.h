@@ -51,10 +51,14 @@ Ex tuned_number(const Model *model, const double *at);
 Ex tuned_or_fixed(const Model *model, const double *at);
 /* The formula of the difference of the numbers at a and b; 0 if it follows no parameter. */
 Ex tuned_difference(const Model *model, const double *a, const double *b);
-/* Set the formulas of `count` numbers, replacing earlier ones; a formula that is 0 or a literal is removed. */
+/* Set the formulas of `count` numbers, replacing earlier ones, but for formulas that are 0 or a literal. */
 void tuning_set(Tuning *tuning, const double *at, const Ex *formula, int count);
+/* `count` numbers follow no parameter any more. */
+void tuning_drop(Tuning *tuning, const double *at, int count);
 /* Give `count` copies of numbers the formulas of the originals. */
 void tuning_copy(const Model *model, const double *to, const double *from, int count);
+/* The same for all numbers in a copy of `bytes` of the model. */
+void tuning_copy_all(const Model *model, const void *to, const void *from, size_t bytes);
 /* Copy an output of the model with the formulas of its point. */
 void output_copy(const Model *model, Output *to, const Output *from);
 void tuning_require(Tuning *tuning, Ex value, bool zero, const char *text);

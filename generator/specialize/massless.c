@@ -3,6 +3,7 @@
 #include "base/text.h"
 #include "base/vec3.h"
 #include "model/model.h"
+#include "model/tunable.h"
 #include "sequence/sequence.h"
 #include "specialize/specialize.h"
 #include "subset/subset.h"
@@ -15,19 +16,24 @@ static bool is_light(const Model *model, int body, double below)
     return (model->free_base || body != BODY_BASE) && model->body[body].mass < below;
 }
 
-const Model *model_lighten(Pool *pool, const Model *model, double below, const char **names)
+const Model *model_lighten(Pool *pool, const Model *model, const Model *numbers, double below, const char **names)
 {
     Model *light = pool_alloc(pool, sizeof *light);
     const size_t size = sizeof *model->body * (size_t)model->bodies;
     Text list = {.pool = pool};
     *light = *model;
     light->body = pool_grow(pool, model->body, size, size);
+    tuning_copy_all(model, light->body, model->body, size);
     for (int b = 0; b < model->bodies; ++b) {
         Body *body = &light->body[b];
-        if (!is_light(model, b, below))
+        if (!is_light(numbers, b, below))
             continue;
         body->mass = 0;
         memset(body->inertia, 0, sizeof body->inertia);
+        if (model->tuning) { /* whatever the mass would be */
+            tuning_drop(model->tuning, &body->mass, 1);
+            tuning_drop(model->tuning, body->inertia, 6);
+        }
         text_print(&list, "%s%s", list.size ? ", " : "", body->name);
     }
     *names = list.size ? list.s : NULL;

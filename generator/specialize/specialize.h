@@ -24,11 +24,11 @@ const Model *model_drive(Pool *pool, const Model *model, const int *coordinate, 
  * change by that. */
 const Model *model_post(Pool *pool, const Model *model, const int *wheel, int count);
 
-/* ---- massless.c: light bodies without mass, an approximation; without a tuning */
+/* ---- massless.c: light bodies without mass, an approximation */
 
-/* The model in which bodies of less than `below` kg have neither mass nor inertia. *names: their names as a text for
- * messages; NULL: there are no such bodies. */
-const Model *model_lighten(Pool *pool, const Model *model, double below, const char **names);
+/* The model in which bodies of less than `below` kg in `numbers`, the same model or one without a tuning, have neither
+ * mass nor inertia. *names: their names as a text for messages; NULL: there are no such bodies. */
+const Model *model_lighten(Pool *pool, const Model *model, const Model *numbers, double below, const char **names);
 /* The largest part of its kinetic energy that a motion of the free coordinates loses by that, base and driven
  * coordinates held, at the design and some configurations in the coordinates' ranges. 1: a motion is left without
  * inertia, so that the equations of motion have no solution. */

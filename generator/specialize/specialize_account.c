@@ -39,7 +39,7 @@ static void learn_massless(Accounting *a, const Model *drawn)
     const char *names;
     if (a->all->massless == 0)
         return;
-    const Model *light = model_lighten(a->pool, drawn, a->all->massless, &names);
+    const Model *light = model_lighten(a->pool, drawn, drawn, a->all->massless, &names);
     const Sequence *first = sequence_find(a->pool, light);
     add_row(a, formulate(a->pool, model_assemble(a->pool, light, first), first, a->solve, a->recovery),
             pool_print(a->pool, "bodies below %.6g kg massless, an approximation", a->all->massless),

@@ -32,7 +32,7 @@ static void read_massless(const Item *item, const Model *model, Scene *scene)
 
 bool rig_wanted(const Item *root)
 {
-    return doc_find(root, "base") || doc_find(root, "driven") || doc_find(root, "massless");
+    return doc_find(root, "base") || doc_find(root, "driven") || doc_find(root, "posts") || doc_find(root, "massless");
 }
 
 /* ---- posts -------------------------------------------------------------------------------------------------- */
@@ -133,18 +133,27 @@ void rig_read(Pool *pool, const Item *root, const Model *model, Scene *scene)
         read_posts(pool, doc_find(root, "posts"), model, scene);
 }
 
-static const Model *lighten(Pool *pool, const Model *model, Scene *scene)
+/* numbers: the model with the scene's values in place of its geometric parameters. */
+static const Model *lighten(Pool *pool, const Model *model, const Model *numbers, Scene *scene)
 {
-    const Model *light = model_lighten(pool, model, scene->massless, &scene->massless_names);
+    const Model *light = model_lighten(pool, model, numbers, scene->massless, &scene->massless_names);
     if (!scene->massless_names)
         diag_fail(scene->massless_at, "remove it, or choose a larger mass", "no body of '%s' is lighter than %.6g kg",
                   model->name, scene->massless);
-    scene->lost = model_lost(pool, model, scene->massless);
+    scene->lost = model_lost(pool, numbers, scene->massless);
     if (scene->lost >= 1)
         diag_fail(scene->massless_at,
                   "choose a smaller mass, so that each free coordinate still moves one that has some",
                   "without the mass of %s a coordinate has no inertia", scene->massless_names);
     return light;
+}
+
+static const Model *rigged(Pool *pool, const Model *model, const Scene *scene)
+{
+    if (scene->held)
+        model = model_hold(pool, model, scene->position, scene->euler);
+    model = model_drive(pool, model, scene->drive, scene->driven);
+    return model_post(pool, model, scene->post, scene->posts);
 }
 
 const Model *scene_rig(Pool *pool, const Model *model, const Scene **scene)
@@ -153,13 +162,9 @@ const Model *scene_rig(Pool *pool, const Model *model, const Scene **scene)
         return model;
     Scene *own = pool_alloc(pool, sizeof *own);
     *own = **scene;
-    model = own->fixed ? own->fixed : model;
-    if (own->held)
-        model = model_hold(pool, model, own->position, own->euler);
-    model = model_drive(pool, model, own->drive, own->driven);
-    model = model_post(pool, model, own->post, own->posts);
+    model = rigged(pool, model, own);
     if (own->massless != 0)
-        model = lighten(pool, model, own);
+        model = lighten(pool, model, own->fixed ? rigged(pool, own->fixed, own) : model, own);
     own->signal = scene_signals(pool, model); /* new inputs are added after the others */
     *scene = own;
     return model;

@@ -85,7 +85,8 @@ typedef struct Scene {
     bool plotted;          /* the scene names the curves */
     const ShownUnit **unit;
     int units;
-    const Model *fixed; /* the model with numbers in place of geometric parameters, for rigs; NULL: it has none */
+    const Model *fixed; /* of a rig: the model with the scene's numbers in place of geometric parameters, by which it
+                         * is read; NULL: it has none */
     bool held;          /* the base is fixed at `position` and `euler` */
     double massless;    /* kg: bodies below this mass lose it; 0: none does */
     Place massless_at;

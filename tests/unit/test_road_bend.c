@@ -90,7 +90,8 @@ static void test_points(void **state)
     }
     check_place(&table.head, 0, 1, -1); /* level up to and with the first point */
     check_place(&grid.head, 9, 9, 1);
-    check_place(&bumps.head, 0, 1, -1);
+    check_place(&bumps.head, 0, 1, 1);
+    check_place(&bumps.head, 1, 1, 1);
     check_place(&bumps.head, 2, 1, 1);
     check_place(&bumps.head, 3, 1, 1);
     check_place(&bumps.head, 5, -1, 1);
@@ -103,15 +104,21 @@ static void test_closed(void **state)
     /* 0.1 sin(pi x + y): at its crest -0.1 (pi^2, pi, 1) */
     gic_road_bend(&sine.head, 0, 0, 0.5, 0, out);
     assert_true(fabs(out[0] + 0.1 * pi * pi) < 1e-15 && fabs(out[1] + 0.1 * pi) < 1e-15 && fabs(out[2] + 0.1) < 1e-15);
-    /* a bump of 2 m and 0.1 m, 0.05 (1 - cos(pi x)): at its top -0.05 pi^2 */
-    gic_road_bend(&bumps.head, 0, 0, 1, 1, out);
-    assert_true(fabs(out[0] + 0.05 * pi * pi) < 1e-15 && out[1] == 0 && out[2] == 0);
+    /* a bump of 2 m and 0.1 m, 0.05 (1 - cos(pi x)): at its foot 0.05 pi^2 */
+    gic_road_bend(&bumps.head, 0, 0, 0, 1, out);
+    assert_true(fabs(out[0] - 0.05 * pi * pi) < 1e-15 && out[1] == 0 && out[2] == 0);
     /* from 0 to 1 level at both ends: 3 s^2 - 2 s^3, so 6 - 12 s; of the road that falls from 1 to 0 over 2 m, a
      * quarter of that */
     static const double x[] = {0, 1, 2, 4, 5}, h[] = {0, 1, 1, 0, 0};
     double slope[2][5];
     gic_road_table steps = {{gic_table_height, NULL, gic_table_bend, NULL}, x, h, h, slope[0], slope[1], 5};
     assert_int_equal(gic_road_table_setup(&steps), GIC_OK);
+    /* where one bump of 1 m and 0.1 m ends and the next begins: 2 pi^2 0.1 on both sides */
+    static const gic_bump pair[] = {{-1, 1, 0.1, -9, 9}, {0, 1, 0.1, -9, 9}};
+    gic_road_bumps chain = {{gic_bumps_height, NULL, gic_bumps_bend, NULL}, pair, 2, 0};
+    assert_int_equal(gic_road_bumps_setup(&chain), GIC_OK);
+    gic_road_bend(&chain.head, 0, 0, 0, 0.3, out);
+    assert_true(fabs(out[0] - 0.2 * pi * pi) < 1e-14);
     const double place[] = {0.25, 0.5, 0.75, 1, 1.5, 2, 3, 4, 4.5, 5, 6},
                  bend[] = {3, 0, -3, 0, 0, -1.5, 0, 0, 0, 0, 0};
     for (int i = 0; i < 11; ++i) {
