@@ -7,7 +7,10 @@
  * A contact that begins or ends just at the end of a step, as numbers that people write let it, needs no piece, but
  * there an evaluation of the rates may be on either side of it, and its derivatives lack a stiffness, or have one too
  * many: a sixth of the change in such a step, with a stiff contact more than all else. So the part of the step next to
- * it is made by itself, a millionth of the step. */
+ * it is made by itself, a millionth of the step.
+ *
+ * One that is grazed, as by a wheel that just touches and is let go, has a time whose derivative is without bound,
+ * while what it does to the state is not: forces are continuous there, so that the time may as well stay. */
 #include "engine/engine.h"
 #include "gic_runtime.h"
 #include "run/tangent_private.h"
@@ -25,6 +28,8 @@ typedef struct Piece {
 } Piece;
 
 static const double next_to = 1e-6;       /* of a step: what is made by itself next to a contact at its end */
+static const double grazing = 1e-3;       /* a contact's rate there, of its change over the step by the step */
+static const double beyond = 1e-4;        /* of a step: past a contact that is grazed */
 static const double least_change = 1e-12; /* of a contact's number within a step, m or more: below it is noise */
 
 typedef struct Watch {
@@ -118,9 +123,9 @@ void tangent_contacts_before(TangentRun *run, const TrailStep *next)
         --watch->before->mark.steps;
 }
 
-/* How far the state is from where the number of a contact is 0, s, by its slope; guard: of the contact, -1: the one
+/* How far the state is from where the number of a contact is 0, s, by its rate; guard: of the contact, -1: the one
  * that is nearest, which it becomes. Without derivatives. */
-static int find_off(TangentRun *run, int *guard, double *off)
+static int find_off(TangentRun *run, int *guard, double *off, double *guard_rate)
 {
     const int conditions = run->happened.conditions, n = run->descriptor.slow_count + run->descriptor.fast_count;
     const int first = *guard < 0 ? conditions : *guard;
@@ -138,17 +143,20 @@ static int find_off(TangentRun *run, int *guard, double *off)
         if (!(fabs(value / slope) < fabs(*off)))
             continue;
         *off = value / slope;
+        *guard_rate = slope;
         *guard = i;
     }
     return status;
 }
 
-/* The contact that ends a piece, if one does, and when: the core comes near it, to some 1e-4 of a step; here its number
- * has to be 0, as the derivative of its time is that of this zero. */
-static int refine(TangentRun *run, const Piece *piece, double step, TrailStep *next, double *time, int *guard)
+/* The contact that ends a piece, if one does and its time has a derivative, and when: the core comes near it, to some
+ * 1e-4 of a step; here its number has to be 0, as the derivative of its time is that of this zero. change: of the
+ * contacts' numbers over the step. */
+static int refine(TangentRun *run, const Piece *piece, double step, const double *change, TrailStep *next, double *time,
+                  int *guard)
 {
     const double near = 0.01 * step, close = 1e-12 * step + 8 * DBL_EPSILON * fabs(piece->end);
-    double at = piece->end, off = 0;
+    double at = piece->end, off = 0, rate = 0;
     int status = GIC_OK, later;
     *guard = -1;
     *time = piece->end;
@@ -157,7 +165,7 @@ static int refine(TangentRun *run, const Piece *piece, double step, TrailStep *n
     for (int i = 0; i < 20 && status == GIC_OK; ++i) {
         status = tangent_piece(run, at, piece->parts, -1, -1, next, &later);
         if (status == GIC_OK)
-            status = find_off(run, guard, &off);
+            status = find_off(run, guard, &off, &rate);
         tangent_restore(run, run->happened.watch->here, next);
         if (!(fabs(off) > close) || !(fabs(at - off - piece->end) < near) || !(at - off > piece->start))
             break;
@@ -168,6 +176,10 @@ static int refine(TangentRun *run, const Piece *piece, double step, TrailStep *n
         *time = at;
     else
         *guard = -1;
+    if (*guard >= 0 && fabs(rate) * step <= grazing * change[*guard - run->happened.conditions]) {
+        *guard = -1;
+        *time = piece->end + beyond * step; /* so that the next piece is on one side */
+    }
     return status;
 }
 
@@ -204,17 +216,18 @@ static int press_in(const TangentRun *run, const Both *both, double *press)
     return run->code->contacts->press(run->self, time, own, press);
 }
 
-/* Whether a contact begins or ends at the first and at the last moment of the step: at[2]. */
-static int find_touching(const TangentRun *run, bool *at)
+/* Whether a contact begins or ends at the first and at the last moment of the step: at[2]. change: of the contacts'
+ * numbers over the step. */
+static int find_touching(const TangentRun *run, bool *at, double *change)
 {
     double press[2][GIC_CONTACTS];
     int status = press_in(run, run->happened.watch->before->both, press[0]);
     if (status == GIC_OK)
         status = press_in(run, run->both, press[1]);
     for (int i = 0; i < run->code->contact_count && status == GIC_OK; ++i) {
-        const double change = fabs(press[1][i] - press[0][i]);
-        for (int end = 0; end < 2 && change > least_change; ++end)
-            at[end] = at[end] || fabs(press[end][i]) <= next_to * change;
+        change[i] = fabs(press[1][i] - press[0][i]);
+        for (int end = 0; end < 2 && change[i] > least_change; ++end)
+            at[end] = at[end] || fabs(press[end][i]) <= next_to * change[i];
     }
     return status;
 }
@@ -251,7 +264,8 @@ int tangent_contacts_after(TangentRun *run, bool *again)
         return GIC_OK;
     const double start = gic_time(watch->before->both), end = gic_time(run->both);
     bool touching[2] = {false, false};
-    int late = -1, status = find_touching(run, touching);
+    double change[GIC_CONTACTS];
+    int late = -1, status = find_touching(run, touching, change);
     if (status != GIC_OK || (!watch->pieces && !touching[0] && !touching[1]))
         return status;
     Piece chain[watch->pieces + 3];
@@ -276,7 +290,8 @@ int tangent_contacts_after(TangentRun *run, bool *again)
             to = chain[i].end;
         if (i + 1 < count && !chain[i].stays) {
             chain[i].start = gic_time(run->both);
-            status = refine(run, &chain[i], end - start, &next, &to, &guard);
+            status = refine(run, &chain[i], end - start, change, &next, &to, &guard);
+            to = fmin(to, (chain[i].end + chain[i + 1].end) / 2);
         }
         if (status == GIC_OK)
             status = tangent_piece(run, to, chain[i].parts, late, guard, &next, &later);
