@@ -6,6 +6,7 @@
  * spin v / R and the slip of their drift (TIRES.md section 2), by which these are differentiated. */
 #include "run/start_change.h"
 #include "run/tangent_private.h"
+#include "run/run.h"
 #include "tape/engine_tape.h"
 #include "vehicle/wheel.h"
 
@@ -31,6 +32,54 @@ static int places_change(const TangentRun *run, const RunVariable *v, double *ro
     }
     for (int i = 2 * linear->places; i < linear->count && !run->rests->locked; ++i)
         row[i + base] += input[0] * z[i];
+    return GIC_OK;
+}
+
+/* Coordinates at time 0 with another value of a parameter. */
+static int initial_at(const TangentRun *run, int parameter, double p, double *value)
+{
+    const gic_model *code = run->code;
+    double number[code->parameter_count + 1];
+    Scene other = *run->scene;
+    memcpy(number, other.parameter, (size_t)code->parameter_count * sizeof *number);
+    number[parameter] = p;
+    other.parameter = number;
+    const int status = scene_start(run->engine, &other, &run->copy->head);
+    for (int c = 0; c < code->coordinate_count && status == GIC_OK; ++c)
+        value[c] =
+            code->coordinate_state[c] < 0 ? 0 : tape_array(run->copy, code->state_offset)[code->coordinate_state[c]];
+    return status;
+}
+
+/* row: that of coordinates whose value at time 0 is the model's, where a geometric parameter gives it. Set-up has no
+ * derivatives: a central difference of fourth order, exact to 1e-12 for what is no steeper than a cubic, since values
+ * are formulas of the parameter or lengths of the drawing. A value that nothing can be set up with counts only where
+ * others show that something follows. */
+static int initial_change(const TangentRun *run, const RunVariable *v, double *row)
+{
+    const gic_model *code = run->code;
+    const int count = code->coordinate_count;
+    const double p = run->scene->parameter[v->index], step = 1e-3 * fmax(fabs(p), 1e-3);
+    double value[5][count + 1];
+    bool follows = false;
+    int failed = GIC_OK;
+    for (int i = 0; i < 5; ++i) { /* the last one: as it is */
+        const double apart = i == 4 ? 0 : (i < 2 ? i - 2 : i - 1) * step;
+        const int status = initial_at(run, v->index, p + apart, value[i]);
+        if (status != GIC_OK) {
+            memset(value[i], 0, sizeof value[i]);
+            failed = status;
+        }
+    }
+    for (int i = 0; i < 4; ++i)
+        for (int c = 0; c < count; ++c)
+            follows = follows || (!run->scene->given[c] && value[i][c] != 0 && value[i][c] != value[4][c]);
+    if (!follows || failed != GIC_OK)
+        return follows ? failed : GIC_OK;
+    for (int c = 0; c < count; ++c)
+        if (code->coordinate_state[c] >= 0 && !run->scene->given[c])
+            row[code->coordinate_state[c]] +=
+                (value[0][c] - value[3][c] + 8 * (value[2][c] - value[1][c])) / (12 * step);
     return GIC_OK;
 }
 
@@ -113,6 +162,8 @@ int start_changes(TangentRun *run, double *change)
         }
         if (run->rests)
             status = places_change(run, v, row);
+        else if (run->model->tuning && v->kind == BY_PARAMETER)
+            status = initial_change(run, v, row);
         if (status == GIC_OK && rolls)
             status = rolling_change(run, v, row);
     }

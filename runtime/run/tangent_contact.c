@@ -9,8 +9,9 @@
  * many: a sixth of the change in such a step, with a stiff contact more than all else. So the part of the step next to
  * it is made by itself, a millionth of the step.
  *
- * One that is grazed, as by a wheel that just touches and is let go, has a time whose derivative is without bound,
- * while what it does to the state is not: forces are continuous there, so that the time may as well stay. */
+ * One that is grazed, as by a wheel that just touches where a step begins and is let go, so that its rate comes from
+ * next to nothing, has a time whose derivative is without bound, while what it does to the state is not: forces are
+ * continuous there, so that the time may as well stay. */
 #include "engine/engine.h"
 #include "gic_runtime.h"
 #include "run/tangent_private.h"
@@ -28,7 +29,7 @@ typedef struct Piece {
 } Piece;
 
 static const double next_to = 1e-6;       /* of a step: what is made by itself next to a contact at its end */
-static const double grazing = 1e-3;       /* a contact's rate there, of its change over the step by the step */
+static const double grazing = 1e-3;       /* of a step: a contact as near to its start may be grazed */
 static const double beyond = 1e-4;        /* of a step: past a contact that is grazed */
 static const double least_change = 1e-12; /* of a contact's number within a step, m or more: below it is noise */
 
@@ -150,9 +151,9 @@ static int find_off(TangentRun *run, int *guard, double *off, double *guard_rate
 }
 
 /* The contact that ends a piece, if one does and its time has a derivative, and when: the core comes near it, to some
- * 1e-4 of a step; here its number has to be 0, as the derivative of its time is that of this zero. change: of the
- * contacts' numbers over the step. */
-static int refine(TangentRun *run, const Piece *piece, double step, const double *change, TrailStep *next, double *time,
+ * 1e-4 of a step; here its number has to be 0, as the derivative of its time is that of this zero. start: of the
+ * step. */
+static int refine(TangentRun *run, const Piece *piece, double start, double step, TrailStep *next, double *time,
                   int *guard)
 {
     const double near = 0.01 * step, close = 1e-12 * step + 8 * DBL_EPSILON * fabs(piece->end);
@@ -176,9 +177,16 @@ static int refine(TangentRun *run, const Piece *piece, double step, const double
         *time = at;
     else
         *guard = -1;
-    if (*guard >= 0 && fabs(rate) * step <= grazing * change[*guard - run->happened.conditions]) {
-        *guard = -1;
-        *time = piece->end + beyond * step; /* so that the next piece is on one side */
+    if (*guard >= 0 && *time - start <= grazing * step) {
+        double at_start = 0; /* stays so where the number is 0 and stands */
+        int same = *guard;
+        run->plain = true;
+        status = find_off(run, &same, &off, &at_start);
+        run->plain = false;
+        if (fabs(rate - at_start) > 0.1 * fabs(rate)) {
+            *guard = -1;
+            *time = piece->end + beyond * step; /* so that the next piece is on one side */
+        }
     }
     return status;
 }
@@ -216,18 +224,17 @@ static int press_in(const TangentRun *run, const Both *both, double *press)
     return run->code->contacts->press(run->self, time, own, press);
 }
 
-/* Whether a contact begins or ends at the first and at the last moment of the step: at[2]. change: of the contacts'
- * numbers over the step. */
-static int find_touching(const TangentRun *run, bool *at, double *change)
+/* Whether a contact begins or ends at the first and at the last moment of the step: at[2]. */
+static int find_touching(const TangentRun *run, bool *at)
 {
     double press[2][GIC_CONTACTS];
     int status = press_in(run, run->happened.watch->before->both, press[0]);
     if (status == GIC_OK)
         status = press_in(run, run->both, press[1]);
     for (int i = 0; i < run->code->contact_count && status == GIC_OK; ++i) {
-        change[i] = fabs(press[1][i] - press[0][i]);
-        for (int end = 0; end < 2 && change[i] > least_change; ++end)
-            at[end] = at[end] || fabs(press[end][i]) <= next_to * change[i];
+        const double change = fabs(press[1][i] - press[0][i]);
+        for (int end = 0; end < 2 && change > least_change; ++end)
+            at[end] = at[end] || fabs(press[end][i]) <= next_to * change;
     }
     return status;
 }
@@ -264,8 +271,7 @@ int tangent_contacts_after(TangentRun *run, bool *again)
         return GIC_OK;
     const double start = gic_time(watch->before->both), end = gic_time(run->both);
     bool touching[2] = {false, false};
-    double change[GIC_CONTACTS];
-    int late = -1, status = find_touching(run, touching, change);
+    int late = -1, status = find_touching(run, touching);
     if (status != GIC_OK || (!watch->pieces && !touching[0] && !touching[1]))
         return status;
     Piece chain[watch->pieces + 3];
@@ -290,8 +296,8 @@ int tangent_contacts_after(TangentRun *run, bool *again)
             to = chain[i].end;
         if (i + 1 < count && !chain[i].stays) {
             chain[i].start = gic_time(run->both);
-            status = refine(run, &chain[i], end - start, change, &next, &to, &guard);
-            to = fmin(to, (chain[i].end + chain[i + 1].end) / 2);
+            status = refine(run, &chain[i], start, end - start, &next, &to, &guard);
+            to = guard < 0 ? fmin(to, (chain[i].end + chain[i + 1].end) / 2) : to;
         }
         if (status == GIC_OK)
             status = tangent_piece(run, to, chain[i].parts, late, guard, &next, &later);

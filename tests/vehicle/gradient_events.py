@@ -405,6 +405,34 @@ Path(path).write_text(Path(f"{models}/scenes/full_run.scene").read_text().replac
 check("it is short", "duration: 4" in Path(path).read_text())
 both_ways("gears and contacts", "chassis.x", f"{models}/hmmwv_vehicle.veh", path, ["initial/x.rate", "initial/yaw", "input/accelerator[1]", "input/rack[1]"])
 
+# ---- a wheel that just touches at rest: the time of the contact has no derivative, what follows has --------------------------------------
+
+touching = f"{work}/touching.veh"
+Path(touching).write_text("""gicgen: 1
+model: touching
+base: ground
+gravity: [0, 0, -10]
+parameters:
+  m: {value: 1, unit: kg, tunable: true}
+bodies:
+  b: {mass: m, com: [0, 0, 1], inertia: [1, 1, 1]}
+joints:
+  j: {type: prismatic, bodies: [ground, b], axis: [0, 0, 1]}
+coordinates:
+  z: {type: translation, bodies: [ground, b], axis: [0, 0, 1], range: [-5, 5]}
+wheels:
+  w: {body: b, center: [0, 0, 1], radius: 1, stiffness: 1000}
+outputs:
+  z: {type: coordinate, coordinate: z}
+""")
+path, w = f"{work}/touching.scene", math.sqrt(1000)
+for method, limit in (("rk4", 3e-3), ("ab3", 0.1)):  # of an amplitude of 1 and of w: steps of 0.3 rad
+    for height in (0, -0.001):
+        Path(path).write_text(f"gicscene: 1\nduration: 0.1\nstep: 0.01\nintegrator: {method}\nlocate: true\ninitial: {{coordinates: {{z: {height}}}}}\n")
+        for names in (["initial"], ["initial/z"], ["initial/z", "parameter/m"]):
+            near(f"touching, {method}, {height}: z by z", gradient("z.value", touching, path, *names)[1]["initial/z"], math.cos(w * 0.1), limit)
+            near(f"touching, {method}, {height}: rate by z", gradient("z.rate", touching, path, *names)[1]["initial/z"], -w * math.sin(w * 0.1), limit * w)
+
 # ---- bends of roads: by moving the road ------------------------------------------------------------------------------------------
 
 roads = {"a ramp": "{type: table, x: [%(5)s, %(6)s, %(9.4)s, %(9.5)s, %(9.8)s], height: [0, 0.06, 0.5, 0.51, 0]}",

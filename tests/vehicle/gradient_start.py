@@ -64,6 +64,80 @@ Path(scene).write_text("gicscene: 1\nduration: 1\nstep: 0.001\nintegrator: rk4\n
 frequency = gradient("lower.z", hanging, scene, "initial/z.rate")[1]["initial/z.rate"]
 check("hanging: a rate at the start is no part of the equilibrium", abs(frequency) > 1e-3)
 
+# ---- a start that the model gives ---------------------------------------------------------------------------------------------
+
+falling = f"{work}/falling.veh"
+Path(falling).write_text("""gicgen: 1
+model: falling
+base: ground
+gravity: [0, 0, -10]
+parameters:
+  z0: {value: 1, unit: m, tunable: true}
+  m: {value: 1e-9, unit: kg, tunable: true}
+bodies:
+  ball: {mass: m, com: [0, 0, 0], inertia: [1, 1, 1]}
+joints:
+  a: {type: prismatic, bodies: [ground, ball], axis: [0, 0, 1]}
+coordinates:
+  z: {type: translation, bodies: [ground, ball], axis: [0, 0, 1], range: [-50, 50], initial: 2 * z0^2}
+outputs:
+  z: {type: coordinate, coordinate: z}
+""")
+for initial, wanted in (("", 4), ("initial: {coordinates: {z: 3}}\n", 0)):
+    Path(scene).write_text(f"gicscene: 1\nduration: 1\nstep: 0.1\nintegrator: rk4\n{initial}")
+    for names in (["parameter"], ["parameter/z0"]):
+        d = gradient("z.value", falling, scene, *names)[1]
+        near(f"falling from {'what the scene gives' if initial else 'what the model gives'}", d["parameter/z0"], wanted, 1e-11)
+
+# ---- a rig: numbers of wheels on posts, of a base that is held --------------------------------------------------------------------------
+
+rig = f"{work}/rig.veh"
+Path(rig).write_text("""gicgen: 1
+model: rig
+base: b
+gravity: [0, 0, -10]
+parameters:
+  r: {value: 1, unit: m, tunable: true}
+  m: {value: 1, unit: kg, tunable: true}
+  q: {value: 0.5, unit: kg, tunable: true}
+  k: {value: 1000, unit: N/m, tunable: true}
+  s: {value: 100, unit: N/m, tunable: true}
+bodies:
+  b: {mass: 4, com: [0, 0, 1], inertia: [1, 1, 1]}
+  a: {mass: m, com: [0, 0, 2], inertia: [1, 1, 1]}
+  e: {mass: q, com: [0, 0, 3], inertia: [0.001, 0.001, 0.001]}
+joints:
+  j: {type: prismatic, bodies: [b, a], axis: [0, 0, 1]}
+  f: {type: fixed, bodies: [a, e], point: [0, 0, 2]}
+coordinates:
+  z: {type: translation, bodies: [b, a], axis: [0, 0, 1], range: [-1, 1]}
+wheels:
+  wa: {body: b, center: [1, 1, 1], radius: r, stiffness: k, damping: 10}
+  wb: {body: b, center: [1, -1, 1], radius: r, stiffness: k, damping: 10}
+  wc: {body: b, center: [-1, 1, 1], radius: r, stiffness: k, damping: 10}
+  wd: {body: b, center: [-1, -1, 1], radius: r, stiffness: k, damping: 10}
+forces:
+  f: {type: spring_damper, coordinate: z, stiffness: s, damping: 1}
+outputs:
+  z: {type: coordinate, coordinate: z}
+  p: {type: position, body: b}
+""")
+# at rest z = -(m + q) g / s, and the base stands at r - (4 + m + q) g / 4 k
+for what, keys, k, carried in (("free", "", 1000, 1.5), ("posts", "posts: {wa: 0}\nparameters: {k: 2000}\n", 2000, 1.5), ("held", "base: fixed\n", 1000, 1.5),
+                               ("massless", "massless: {below: 0.8}\n", 1000, 1)):
+    Path(scene).write_text(f"gicscene: 1\nduration: 0.1\nstep: 0.01\ninitial: {{equilibrium: true}}\n{keys}")
+    light = what == "massless"
+    for names in (["parameter"], ["parameter/m"], ["parameter/k", "parameter/q"]):
+        value, d = gradient("z.value", rig, scene, *names)
+        near(f"rig, {what}: where it rests", value, -carried / 10, 1e-10)
+        for name, wanted in (("m", -0.1), ("q", 0 if light else -0.1), ("s", carried * 10 / 100**2), ("k", 0), ("r", 0)):
+            near(f"rig, {what}: z by {name}", d.get(f"parameter/{name}", wanted), wanted, 1e-12)
+        if what != "held":
+            value, d = gradient("p.z", rig, scene, *names)
+            near(f"rig, {what}: where the base rests", value, 1 - (4 + carried) * 10 / (4 * k), 1e-10)
+            for name, wanted in (("m", -2.5 / k), ("q", 0 if light else -2.5 / k), ("s", 0), ("k", (4 + carried) * 2.5 / k**2), ("r", 1)):
+                near(f"rig, {what}: base by {name}", d.get(f"parameter/{name}", wanted), wanted, 1e-12)
+
 # ---- a beam on two springs, whose angle is not small -------------------------------------------------------------------------------
 
 beam = f"{work}/beam.veh"
