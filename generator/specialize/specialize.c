@@ -545,10 +545,14 @@ static void drop_inertia(Narrower *n)
         if (block[i])
             mark_inertia(block[i], read);
     for (int c = 0; c < sequence->classes; ++c) {
-        const Formula *formula = n->plan->formula[c];
-        drop_stores(n, &sequence->class[c], read, &n -> plan -> formula[c] -> solve);
-        if (formula->polynomial)
-            drop_stores(n, &sequence->class[c], read, &formula -> polynomial -> solve);
+        const Class *class = &sequence->class[c];
+        Formula *formula = n->plan->formula[c];
+        Block *solve = &formula->solve;
+        drop_stores(n, class, read, solve);
+        if (formula->polynomial) {
+            solve = &formula->polynomial->solve;
+            drop_stores(n, class, read, solve);
+        }
     }
 }
 
