@@ -80,7 +80,7 @@
  */
 #include "five_link.h"
 
-#if FIVE_LINK_H != 0x38584e01
+#if FIVE_LINK_H != 0x2a43be75
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 

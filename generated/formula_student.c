@@ -137,7 +137,7 @@
  */
 #include "formula_student.h"
 
-#if FORMULA_STUDENT_H != 0xd7694247
+#if FORMULA_STUDENT_H != 0x293202af
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 

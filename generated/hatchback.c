@@ -123,7 +123,7 @@
  */
 #include "hatchback.h"
 
-#if HATCHBACK_H != 0xa0aa0745
+#if HATCHBACK_H != 0xc6db5c4b
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 

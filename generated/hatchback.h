@@ -122,12 +122,12 @@
  * With head.most = N, 4 ratio + 4 or more, no step takes more than N, whatever happens in it (EVENTS.md section 10).
  */
 #ifndef HATCHBACK_H
-#define HATCHBACK_H 0xa0aa0745
+#define HATCHBACK_H 0xc6db5c4b
 
 #include "gic_runtime.h"
 
-#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 12
-#error "hatchback.h was generated for version 12 of gic_runtime.h: use that one, or generate the model again"
+#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 13
+#error "hatchback.h was generated for version 13 of gic_runtime.h: use that one, or generate the model again"
 #endif
 
 #ifdef __cplusplus
@@ -144,7 +144,7 @@ enum {
     HATCHBACK_ENGINE = 18, /* engine.speed among the fast states */
     HATCHBACK_GEAR = 1, /* transmission.gear in discrete[] */
     HATCHBACK_CONTACTS = 12,
-    HATCHBACK_ABI = 12,
+    HATCHBACK_ABI = 13,
     HATCHBACK_FREE_BASE = 1,
     HATCHBACK_STATES = 85,
     HATCHBACK_SLOW = 65,

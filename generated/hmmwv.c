@@ -86,7 +86,7 @@
  */
 #include "hmmwv.h"
 
-#if HMMWV_H != 0xe71f4b05
+#if HMMWV_H != 0x01e95691
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 

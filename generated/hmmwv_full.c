@@ -86,7 +86,7 @@
  */
 #include "hmmwv_full.h"
 
-#if HMMWV_FULL_H != 0x0a4208f3
+#if HMMWV_FULL_H != 0x3a137617
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 

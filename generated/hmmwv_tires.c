@@ -90,7 +90,7 @@
  */
 #include "hmmwv_tires.h"
 
-#if HMMWV_TIRES_H != 0x6a1df11b
+#if HMMWV_TIRES_H != 0x978c7ad7
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 

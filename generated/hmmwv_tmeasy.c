@@ -90,7 +90,7 @@
  */
 #include "hmmwv_tmeasy.h"
 
-#if HMMWV_TMEASY_H != 0xb4396d75
+#if HMMWV_TMEASY_H != 0x838619d7
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 

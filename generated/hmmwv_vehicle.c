@@ -91,7 +91,7 @@
  */
 #include "hmmwv_vehicle.h"
 
-#if HMMWV_VEHICLE_H != 0x18269f33
+#if HMMWV_VEHICLE_H != 0x60d699c5
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 

@@ -67,7 +67,7 @@
  */
 #include "motorcycle.h"
 
-#if MOTORCYCLE_H != 0x9b79ce4f
+#if MOTORCYCLE_H != 0x9b82d6f7
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 

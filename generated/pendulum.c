@@ -29,7 +29,7 @@
  */
 #include "pendulum.h"
 
-#if PENDULUM_H != 0x703f0e61
+#if PENDULUM_H != 0x27315099
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 

@@ -56,7 +56,7 @@
  */
 #include "quarter_car.h"
 
-#if QUARTER_CAR_H != 0xccf21943
+#if QUARTER_CAR_H != 0x3a48b007
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 

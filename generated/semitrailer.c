@@ -130,7 +130,7 @@
  */
 #include "semitrailer.h"
 
-#if SEMITRAILER_H != 0x73594af5
+#if SEMITRAILER_H != 0x2a7a349f
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 

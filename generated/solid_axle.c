@@ -75,7 +75,7 @@
  */
 #include "solid_axle.h"
 
-#if SOLID_AXLE_H != 0x8905c241
+#if SOLID_AXLE_H != 0x6d835b0f
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 

@@ -78,7 +78,7 @@
  */
 #include "trailing_arm.h"
 
-#if TRAILING_ARM_H != 0xabc4fc75
+#if TRAILING_ARM_H != 0x113aa20d
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 

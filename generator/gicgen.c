@@ -47,6 +47,7 @@ static const char usage[] =
     "                   derivatives\n"
     "  --implicit       code that takes implicit steps too, for stiff models (models/STIFF.md); units of FMI\n"
     "                   likewise\n"
+    "  --exponential    with --implicit: exponential steps, too\n"
     "  --spread-jacobian  with --implicit: steps that keep a Jacobian may share the work of the next\n"
     "  --tire-tables    Magic Formulas by table, in lanes by short polynomials, within 1e-6 of a wheel's load:\n"
     "                   quicker (models/TIRES.md)\n"
@@ -80,7 +81,7 @@ typedef struct Options {
     int fmi;                                               /* version of an FMU */
     const char *model, *scene, *output, *page, *templates; /* page: of --graph or --report; scene: NULL: none */
     bool formed, recovered;                                /* are `solve` and `recovery` given? */
-    bool derivatives, implicit, spread, tire_tables;
+    bool derivatives, implicit, exponential, spread, tire_tables;
 } Options;
 
 static _Noreturn void usage_error(const char *message, const char *word)
@@ -162,6 +163,7 @@ static Options read_options(int count, char **word)
         {"scene", .text = &options.scene},
         {"derivatives", .on = &options.derivatives},
         {"implicit", .on = &options.implicit},
+        {"exponential", .on = &options.exponential},
         {"spread-jacobian", .on = &options.spread},
         {"tire-tables", .on = &options.tire_tables},
         {"templates", .text = &options.templates},
@@ -211,8 +213,8 @@ static Options read_options(int count, char **word)
         usage_error("--derivatives is for the code of one vehicle in any scene, without --batch and --scene; "
                     "vehicles of a batch have derivatives beside it (models/DERIVATIVES.md, Many vehicles)",
                     NULL);
-    if (options.spread && !options.implicit)
-        usage_error("it goes with --implicit", "--spread-jacobian");
+    if ((options.spread || options.exponential) && !options.implicit)
+        usage_error("it goes with --implicit", options.spread ? "--spread-jacobian" : "--exponential");
     if (options.implicit && !fmu && (options.task != TASK_GENERATE || options.scene))
         usage_error("--implicit is for an FMU and the code of one vehicle in any scene, without --batch and --scene",
                     NULL);
@@ -275,6 +277,7 @@ static void write_code(Pool *pool, const Model *model, const Sequence *sequence,
     Style style = style_readable;
     style.derivatives = options->derivatives;
     style.implicit = options->implicit;
+    style.exponential = options->exponential;
     style.spread = options->spread;
     bool batch = options->task == TASK_BATCH;
     const char *path = options->output ? options->output : pool_print(pool, batch ? "%s_batch.c" : "%s.c", model->name);
@@ -321,6 +324,7 @@ static void write_fmu(Pool *pool, const Model *model, const Sequence *sequence, 
     Style style = style_readable;
     style.derivatives = options->derivatives;
     style.implicit = options->implicit || (setting->scene && scene_implicit(setting->scene));
+    style.exponential = options->exponential || (setting->scene && setting->scene->method == GIC_EXP3);
     style.spread = options->spread || (setting->scene && setting->scene->spread);
     fmu_write(pool, options->fmi, formulation, setting->scene, &style, options->templates, path);
 }

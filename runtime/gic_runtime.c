@@ -306,6 +306,8 @@ static Implicit implicit_of(const gic_model *model, void *self)
 /* True for a method that this model can take. */
 static int is_method(const gic_model *model, int32_t method)
 {
+    if (method == GIC_EXP3)
+        return model->implicit && model->implicit->exponential_offset > 0;
     return method == GIC_AB3 || method == GIC_RK4 || (model->implicit && method >= GIC_ROS2 && method <= GIC_IMEX);
 }
 
@@ -533,12 +535,12 @@ static void implicit_drift(const gic_model *model, void *self, const Implicit *w
             w->drift[i] += w->jacobian[w->how->columns * i + w->n + k] * (w->change[k] - input[k]);
 }
 
-/* ROS3, or ROS2 (also for steps of IMEX without history), for the whole state, with its rate at `from`; checked: that
- * was checked. */
+/* ROS3 (also for steps of EXP3 of another length), or ROS2 (also for steps of IMEX without history), for the whole
+ * state, with its rate at `from`; checked: that was checked. */
 static int rosenbrock(const gic_model *model, void *self, gic_real time, gic_real step, int32_t method,
                       const gic_real *from, const gic_real *rate, int checked, gic_real *next)
 {
-    const Rosenbrock *r = method == GIC_ROS3 ? &ros3 : &ros2;
+    const Rosenbrock *r = method == GIC_ROS3 || method == GIC_EXP3 ? &ros3 : &ros2;
     Implicit w = implicit_of(model, self);
     const gic_real reach = r->gamma * step;
     const int checks = checked || ((const gic_head *)self)->unchecked < r->stages - 1;
@@ -609,10 +611,366 @@ static int imex(const gic_model *model, void *self, gic_real time, gic_real step
     return GIC_OK;
 }
 
+/* ---- exponential steps: models/STIFF.md --------------------------------------------------------------------- */
+
+/* With a matrix A near the derivatives of the rates f by states, the motion of y' = A y is exp(t A) y, and of
+ * y' = A y + g with g = c_0 + c_1 t + ... + c_k t^k / k! over a step h it ends at
+ *
+ *     y + h phi_1(h A) (A y + c_0) + h^2 phi_2(h A) c_1 + ... ,   phi_0(z) = exp z, phi_k(z) = z phi_k+1(z) + 1 / k!
+ *
+ * EXP3 takes for g(t) = f(t, y(t)) - A y(t), what A does not tell of the rates, the parabola through the start of the
+ * step before, its own start and `node` of it; the order is 3 for any A, since the parabola's integral over a step is
+ * exact for cubics but for 1/36 of them, and the state at the node, by a straight line, is right to h^3. A step without
+ * history has the straight line through its start and the node in place of the parabola, which for this node is exact
+ * for parabolas, too. A itself is not needed for it: z phi_k+1(z) = phi_k(z) - 1 / k!. (Exponential Adams methods:
+ * Norsett 1969; Hochbruck and Ostermann, Acta Numerica 2010.) */
+static const gic_real node = GIC_R(0.66666666666666663);
+
+enum { FUNCTIONS = 4, SERIES = 13, HALVINGS = 60, SWEEPS = 20 };
+
+/* Its numbers in an instance. Matrices have panels of GIC_PANEL rows, each column by column. */
+typedef struct Exponential {
+    int32_t n, size;      /* states; numbers of a matrix */
+    gic_real *at_node[2]; /* phi_1, phi_2 of node h A */
+    gic_real *at_end[3];  /* phi_1, phi_2, phi_3 of h A */
+    gic_real *work[3];
+    gic_real *change; /* what the state changed by in the step before */
+} Exponential;
+
+static Exponential exponential_of(const gic_model *model, void *self)
+{
+    Exponential e;
+    gic_real *at = array_at(self, model->implicit->exponential_offset);
+    e.n = model->slow_count + model->fast_count;
+    e.size = (e.n + GIC_PANEL - 1) / GIC_PANEL * GIC_PANEL * e.n;
+    for (int32_t i = 0; i < 2; ++i, at += e.size)
+        e.at_node[i] = at;
+    for (int32_t i = 0; i < 3; ++i, at += e.size)
+        e.at_end[i] = at;
+    for (int32_t i = 0; i < 3; ++i, at += e.size)
+        e.work[i] = at;
+    e.change = at;
+    return e;
+}
+
+/* Where row i of a column stands behind the column's first number. */
+static int32_t panel_row(int32_t n, int32_t i)
+{
+    return i / GIC_PANEL * GIC_PANEL * n + i % GIC_PANEL;
+}
+
+/* As many rows as a vector of the processor has; a loop over all rows of a panel would keep its sums in memory. */
+#if defined __AVX__
+#define GIC_VECTOR 32
+#else
+#define GIC_VECTOR 16
+#endif
+#if defined __GNUC__ && !defined __TINYC__
+typedef gic_real gic_rows __attribute__((vector_size(GIC_VECTOR), aligned(sizeof(gic_real)), may_alias));
+#else
+typedef gic_real gic_rows;
+#endif
+enum { ROWS = sizeof(gic_rows) / sizeof(gic_real), BESIDE = 2 * ROWS < GIC_PANEL ? 4 : 2 };
+
+/* sum[GIC_PANEL] = the rows of a panel, times x[n]. The bits don't depend on the length of vectors. */
+static void panel_times(int32_t n, const gic_real *panel, const gic_real *x, gic_real *sum)
+{
+    for (int32_t row = 0; row < GIC_PANEL; row += BESIDE * ROWS) {
+        const gic_real *at = panel + row;
+        gic_rows *const to = (gic_rows *)(void *)(sum + row);
+        gic_rows part[4] = {{GIC_R(0.0)}, {GIC_R(0.0)}, {GIC_R(0.0)}, {GIC_R(0.0)}};
+        for (int32_t k = 0; k < n; ++k, at += GIC_PANEL) {
+            const gic_rows *const column = (const gic_rows *)(const void *)at;
+            part[0] += column[0] * x[k];
+            part[1] += column[1] * x[k];
+            if (BESIDE > 2) {
+                part[2] += column[2] * x[k];
+                part[3] += column[3] * x[k];
+            }
+        }
+        for (int32_t i = 0; i < BESIDE; ++i)
+            to[i] = part[i];
+    }
+}
+
+/* y += matrix x */
+static void panels_add(int32_t n, const gic_real *matrix, const gic_real *x, gic_real *y)
+{
+    gic_real sum[GIC_PANEL];
+    for (int32_t first = 0; first < n; first += GIC_PANEL) {
+        panel_times(n, matrix + first * n, x, sum);
+        for (int32_t l = 0; l < GIC_PANEL && first + l < n; ++l)
+            y[first + l] += sum[l];
+    }
+}
+
+/* to = a b; column: work space for n numbers */
+static void panels_product(int32_t n, const gic_real *a, const gic_real *b, gic_real *column, gic_real *to)
+{
+    for (int32_t j = 0; j < n; ++j) {
+        for (int32_t k = 0; k < n; ++k)
+            column[k] = b[GIC_PANEL * j + panel_row(n, k)];
+        for (int32_t first = 0; first < n; first += GIC_PANEL)
+            panel_times(n, a + first * n, column, to + first * n + GIC_PANEL * j);
+    }
+}
+
+/* matrix += number times the unit matrix */
+static void panels_unit(int32_t n, gic_real number, gic_real *matrix)
+{
+    for (int32_t i = 0; i < n; ++i)
+        matrix[GIC_PANEL * i + panel_row(n, i)] += number;
+}
+
+/* A, in the place of a matrix: rows of velocities solved for accelerations, those of positions. */
+static int exponential_slopes(const Implicit *w, void *self, const Exponential *e, gic_real *a)
+{
+    const gic_implicit *how = w->how;
+    const int32_t n = w->n;
+    for (int32_t i = 0; i < e->size; ++i)
+        a[i] = GIC_R(0.0);
+    for (int32_t k = 0; k < w->m; ++k) {
+        const int32_t i = how->unknown[k], position = how->position[k];
+        for (int32_t j = 0; j < n; ++j)
+            a[GIC_PANEL * j + panel_row(n, i)] = w->jacobian[how->columns * i + j];
+        if (position >= 0)
+            a[GIC_PANEL * i + panel_row(n, position)] = GIC_R(1.0);
+    }
+    if (how->mass_count == 0)
+        return GIC_OK;
+    const int status = implicit_exchange(w, self, GIC_R(0.0)); /* factors of W */
+    w->head->exchanged = 1;
+    for (int32_t j = 0; j < n && status == GIC_OK; ++j) {
+        gic_real *const column = a + GIC_PANEL * j;
+        for (int32_t i = 0; i < n; ++i)
+            w->b[i] = column[panel_row(n, i)];
+        implicit_solve(w, GIC_R(0.0), w->increment);
+        for (int32_t k = 0; k < w->m; ++k)
+            column[panel_row(n, how->unknown[k])] = w->increment[how->unknown[k]];
+    }
+    return status;
+}
+
+/* Scale coordinates by powers of 2, unit[], so that rows and columns of A are about as large: a' = a unit_j / unit_i
+ * (Parlett and Reinsch 1969). Returns the largest sum of a row. */
+static gic_real exponential_balance(const Exponential *e, gic_real *a, gic_real *unit)
+{
+    const int32_t n = e->n;
+    int32_t changed = 1;
+    for (int32_t i = 0; i < n; ++i)
+        unit[i] = GIC_R(1.0);
+    for (int32_t sweep = 0; sweep < SWEEPS && changed; ++sweep) {
+        changed = 0;
+        for (int32_t i = 0; i < n; ++i) {
+            gic_real column = GIC_R(0.0), row = GIC_R(0.0), by = GIC_R(1.0);
+            for (int32_t j = 0; j < n; ++j)
+                if (j != i) {
+                    column += absolute(a[GIC_PANEL * i + panel_row(n, j)]);
+                    row += absolute(a[GIC_PANEL * j + panel_row(n, i)]);
+                }
+            if (!(column > GIC_R(0.0)) || !(row > GIC_R(0.0)))
+                continue;
+            const gic_real before = column + row;
+            for (int32_t k = 0; k < HALVINGS && column < GIC_R(0.5) * row; ++k, column *= GIC_R(4.0))
+                by *= GIC_R(2.0);
+            for (int32_t k = 0; k < HALVINGS && column >= GIC_R(2.0) * row; ++k, column *= GIC_R(0.25))
+                by *= GIC_R(0.5);
+            if (!((column + row) / by < GIC_R(0.95) * before))
+                continue;
+            changed = 1;
+            unit[i] *= by;
+            for (int32_t j = 0; j < n; ++j) {
+                a[GIC_PANEL * i + panel_row(n, j)] *= by;
+                a[GIC_PANEL * j + panel_row(n, i)] /= by;
+            }
+        }
+    }
+    gic_real largest = GIC_R(0.0);
+    for (int32_t i = 0; i < n; ++i) {
+        gic_real row = GIC_R(0.0);
+        for (int32_t j = 0; j < n; ++j)
+            row += absolute(a[GIC_PANEL * j + panel_row(n, i)]);
+        largest = row > largest ? row : largest;
+    }
+    return largest;
+}
+
+/* phi[0] to phi[top] of reach A, |reach A| at most `norm`: by a series of what is left when it is halved often enough,
+ * and doubled again. phi_k(2 z) = 2^-k (phi_0(z) phi_k(z) + sum_j phi_j(z) / (k - j)!), j from 1 to k. z, spare:
+ * matrices of work space; column: n numbers. 0: it would have to be halved too often. */
+static int exponential_functions(const Exponential *e, const gic_real *a, gic_real reach, gic_real norm, int32_t top,
+                                 gic_real *const *phi, gic_real *z, gic_real *spare, gic_real *column)
+{
+    const gic_real share[FUNCTIONS] = {GIC_R(1.0), GIC_R(1.0), GIC_R(0.5), GIC_R(0.16666666666666667)}; /* 1 / k! */
+    int32_t halvings = 0;
+    for (; norm > GIC_R(0.5) && halvings <= HALVINGS; ++halvings) {
+        norm *= GIC_R(0.5);
+        reach *= GIC_R(0.5);
+    }
+    if (halvings > HALVINGS)
+        return 0;
+    gic_real term = share[top];
+    for (int32_t i = 1; i <= SERIES; ++i)
+        term /= (gic_real)(top + i);
+    for (int32_t i = 0; i < e->size; ++i) {
+        z[i] = reach * a[i];
+        phi[top][i] = GIC_R(0.0);
+    }
+    panels_unit(e->n, term, phi[top]);
+    for (int32_t i = SERIES; i > 0; --i) {
+        panels_product(e->n, z, phi[top], column, spare);
+        term *= (gic_real)(top + i);
+        panels_unit(e->n, term, spare);
+        copy(phi[top], spare, e->size);
+    }
+    for (int32_t k = top - 1; k >= 0; --k) {
+        panels_product(e->n, z, phi[k + 1], column, phi[k]);
+        panels_unit(e->n, share[k], phi[k]);
+    }
+    for (; halvings > 0; --halvings)
+        for (int32_t k = top; k >= 0; --k) {
+            gic_real less = GIC_R(1.0);
+            panels_product(e->n, phi[0], phi[k], column, spare);
+            for (int32_t j = 1; j <= k; ++j, less *= GIC_R(0.5))
+                for (int32_t i = 0; i < e->size; ++i)
+                    spare[i] += share[k - j] * phi[j][i];
+            for (int32_t i = 0; i < e->size; ++i)
+                phi[k][i] = less * spare[i];
+        }
+    return 1;
+}
+
+/* A number of a matrix that is not finite, as the index of its row in state[]; -1: there is none. */
+static int32_t panels_lost(int32_t n, const gic_real *matrix)
+{
+    for (int32_t i = 0; i < n; ++i)
+        for (int32_t j = 0; j < n; ++j)
+            if (!gic_finite(matrix + GIC_PANEL * j + panel_row(n, i), 1))
+                return i;
+    return -1;
+}
+
+/* The functions of A, of this state, for steps of this length. */
+static int exponential_begin(const gic_model *model, void *self, gic_real time, gic_real step, const gic_real *from)
+{
+    const Implicit w = implicit_of(model, self);
+    const Exponential e = exponential_of(model, self);
+    gic_real *const a = e.work[2], *const unit = w.drift, *const column = w.change;
+    w.head->span = GIC_R(0.0);
+    w.head->used = w.head->shared = w.head->lost = 0; /* its place is needed */
+    ++w.head->jacobian_count;
+    int status = w.how->jacobian(self, time, from, w.jacobian);
+    if (status == GIC_OK)
+        status = exponential_slopes(&w, self, &e, a);
+    if (status != GIC_OK)
+        return status;
+    int32_t lost = panels_lost(e.n, a);
+    const gic_real norm = lost < 0 ? exponential_balance(&e, a, unit) : GIC_R(0.0);
+    gic_real *const to_node[] = {e.work[0], e.at_node[0], e.at_node[1]};
+    gic_real *const to_end[] = {e.work[0], e.at_end[0], e.at_end[1], e.at_end[2]};
+    const gic_real short_step = node * step;
+    int made = lost < 0;
+    if (made)
+        made = exponential_functions(&e, a, short_step, short_step * norm, 2, to_node, e.at_end[0], e.work[1], column);
+    if (made)
+        made = exponential_functions(&e, a, step, step * norm, 3, to_end, a, e.work[1], column);
+    for (int32_t k = 0; k < 5 && made; ++k) { /* they stand one after another */
+        gic_real *const matrix = e.at_node[0] + k * e.size;
+        for (int32_t j = 0; j < e.n; ++j)
+            for (int32_t i = 0; i < e.n; ++i)
+                matrix[GIC_PANEL * j + panel_row(e.n, i)] *= unit[i] / unit[j];
+        lost = panels_lost(e.n, matrix);
+        made = lost < 0;
+    }
+    if (!made) {
+        ((gic_head *)self)->grown = lost;
+        return GIC_ERROR_PIVOT;
+    }
+    w.head->span = step;
+    w.head->spent = 0;
+    return GIC_OK;
+}
+
+/* Evaluate the rates at a stage. */
+static int stage_rates(const gic_model *model, void *self, gic_real time, const gic_real *stage, gic_real *rate)
+{
+    const int status = evaluate(model, self, time, stage, rate);
+    if (status == GIC_ERROR_INPUT)
+        (void)out_of_bounds(self, stage, 0, model->slow_count + model->fast_count);
+    return status;
+}
+
+/* EXP3 with the exponentials that there are. past: the rate at the start of the step before; NULL: no history. */
+static int exp3(const gic_model *model, void *self, gic_real time, gic_real step, const gic_real *from,
+                const gic_real *rate, const gic_real *past, gic_real *next)
+{
+    const Implicit w = implicit_of(model, self);
+    const Exponential e = exponential_of(model, self);
+    const gic_real part = node * step;
+    gic_real *const x = w.increment, *const y = x + e.n, *const z = y + e.n, *const stage = w.stage, *const there = w.b;
+    for (int32_t i = 0; i < e.n; ++i) {
+        const gic_real moved = past ? node * e.change[i] : GIC_R(0.0);
+        stage[i] = from[i] + moved;
+        x[i] = part * rate[i] - moved;
+        y[i] = past ? node * part * (rate[i] - past[i]) : GIC_R(0.0);
+    }
+    panels_add(e.n, e.at_node[0], x, stage);
+    if (past)
+        panels_add(e.n, e.at_node[1], y, stage);
+    int status = stage_rates(model, self, time + part, stage, there);
+    if (!past && status == GIC_OK) { /* once more, now with a straight line */
+        for (int32_t i = 0; i < e.n; ++i) {
+            x[i] = from[i] - stage[i];
+            y[i] = part * (there[i] - rate[i]);
+            stage[i] -= x[i];
+        }
+        panels_add(e.n, e.at_node[0], x, stage);
+        panels_add(e.n, e.at_node[1], y, stage);
+        status = stage_rates(model, self, time + part, stage, there);
+    }
+    if (status != GIC_OK)
+        return status;
+    for (int32_t i = 0; i < e.n; ++i) {
+        const gic_real moved = stage[i] - from[i], grown = there[i] - rate[i];
+        gic_real slope = moved / node, rise = grown / node, bend = GIC_R(0.0), turn = GIC_R(0.0);
+        if (past) { /* parabolas through what is before, 0, and at the node: bend t^2 + slope t, and of rates */
+            bend = (moved - node * e.change[i]) / (node * (node + GIC_R(1.0)));
+            turn = (grown + node * (past[i] - rate[i])) / (node * (node + GIC_R(1.0)));
+            slope = bend + e.change[i];
+            rise = turn - (past[i] - rate[i]);
+        }
+        next[i] = from[i] + slope + bend;
+        x[i] = step * rate[i] - slope;
+        y[i] = step * rise - GIC_R(2.0) * bend;
+        z[i] = GIC_R(2.0) * step * turn;
+    }
+    panels_add(e.n, e.at_end[0], x, next);
+    panels_add(e.n, e.at_end[1], y, next);
+    if (past)
+        panels_add(e.n, e.at_end[2], z, next);
+    return GIC_OK;
+}
+
+/* A step by exponentials. Those for its length are made where there are none, or too old ones, and where it is the
+ * second one of this length; a single step of another length is ROS3's. */
+static int exponential(const gic_model *model, void *self, gic_real time, gic_real step, const gic_real *from,
+                       const gic_real *rate, const gic_real *past, int checked, gic_real *next)
+{
+    const gic_implicit_head *const implicit = implicit_of(model, self).head;
+    const gic_head *head = (const gic_head *)self;
+    const int again = step == head->step && head->method == GIC_EXP3, none = !(implicit->span > GIC_R(0.0));
+    const int fits = implicit->span == step, old = implicit->keep > 1 && implicit->spent >= implicit->keep;
+    if (!fits && !none && !again)
+        return rosenbrock(model, self, time, step, GIC_EXP3, from, rate, checked, next);
+    const int status = fits && !old ? GIC_OK : exponential_begin(model, self, time, step, from);
+    return status == GIC_OK ? exp3(model, self, time, step, from, rate, past, next) : status;
+}
+
 /* ---- a step ------------------------------------------------------------------------------------------------ */
 
 /* One step from `from` to `next`; the rate at the start goes to `rate`, and *newest points to it as soon as it is
- * known. `past` has the two rates before the step, of IMEX one; NULL: RK4, or an implicit `method` without history. */
+ * known. `past` has the two rates before the step, of IMEX and EXP3 one; NULL: RK4, or an implicit `method` without
+ * history. */
 static int advance(const gic_model *model, void *self, gic_real time, gic_real step, int32_t method,
                    const gic_real *from, const gic_real *past, gic_real *rate, gic_real *next, gic_real *work,
                    const gic_real **newest)
@@ -625,6 +983,8 @@ static int advance(const gic_model *model, void *self, gic_real time, gic_real s
     const int checked = ((const gic_head *)self)->unchecked > unchecked;
     if (past && method == GIC_IMEX)
         status = imex(model, self, time, step, from, rate, past, checked, next);
+    else if (method == GIC_EXP3)
+        status = exponential(model, self, time, step, from, rate, past, checked, next);
     else if (past)
         adams_bashforth(n, step, from, rate, past, past + n, next);
     else if (method > GIC_RK4)
@@ -1487,7 +1847,7 @@ static int plain_step(const gic_model *model, void *self, gic_real step, int32_t
         return head->status = GIC_ERROR_ARGUMENT;
 
     const int32_t n = model->slow_count + model->fast_count;
-    const int32_t most = method == GIC_AB3 ? 2 : method == GIC_IMEX ? 1 : 0; /* rates to keep */
+    const int32_t most = method == GIC_AB3 ? 2 : method >= GIC_IMEX ? 1 : 0; /* rates to keep */
     const int32_t known = goes_on(head, step, method, 1) && most > 0 ? head->history : 0;
     gic_real *history = array_at(self, model->history_offset);
     gic_real *rate = array_at(self, model->scratch_offset), *next = rate + n, *work = next + n;
@@ -1506,11 +1866,14 @@ static int plain_step(const gic_model *model, void *self, gic_real step, int32_t
         copy(history + n, history, n);
         copy(history, rate, n);
     }
-    if (head->history > 0 && method == GIC_IMEX) { /* the state at the start is in `next` */
+    if (method >= GIC_IMEX) {
         const Implicit w = implicit_of(model, self);
-        gic_real *const last = last_change(&w), *const state = array_at(self, model->state_offset);
-        for (int32_t i = 0; i < n; ++i)
-            last[i] = state[i] - next[i];
+        const gic_real *const state = array_at(self, model->state_offset);
+        gic_real *const last = method == GIC_EXP3 ? exponential_of(model, self).change : last_change(&w);
+        for (int32_t i = 0; i < n && head->history > 0; ++i)
+            last[i] = state[i] - next[i]; /* the state at the start is in `next` */
+        if (method == GIC_EXP3 && step == w.head->span)
+            ++w.head->spent;
     }
     return GIC_OK;
 }
@@ -1975,12 +2338,13 @@ int gic_sample(const gic_model *model, void *self, gic_real *next)
     return head->status = status;
 }
 
-/* To `end` by RK4, or ROS2 or ROS3, in parts about as long as fast steps. */
+/* To `end` by RK4, ROS2 or ROS3, in parts about as long as fast steps. */
 static int part_to(const gic_model *model, void *self, gic_real end, gic_real fast_step, int32_t method)
 {
     const gic_real length = end - gic_time(self);
     const int32_t parts = 1 + (int32_t)(GIC_R(0.999) * length / fast_step);
-    method = method == GIC_AB3 ? GIC_RK4 : method == GIC_IMEX ? GIC_ROS2 : method; /* steps without history */
+    if (method == GIC_AB3 || method >= GIC_IMEX) /* one without history, for any length */
+        method = method == GIC_AB3 ? GIC_RK4 : method == GIC_IMEX ? GIC_ROS2 : GIC_ROS3;
     int status = GIC_OK;
     for (int32_t i = 0; i < parts && status == GIC_OK; ++i)
         status = plain_step(model, self, length / (gic_real)parts, method);

@@ -26,7 +26,7 @@ extern "C" {
 #endif
 
 /* Increased when generated code and runtime of different versions no longer fit together. */
-#define GIC_ABI_VERSION 12
+#define GIC_ABI_VERSION 13
 
 /* The number type of everything: compile runtime and generated code with GIC_FLOAT for single precision. The
  * names of the runtime's functions differ between the two, so that mixing them fails at link time. Who defines GIC_NAME
@@ -113,8 +113,9 @@ void gic_road_friction_slope(const gic_road *road, int32_t lane, gic_real time, 
 
 /* ---- the instance ------------------------------------------------------------------------------- */
 
-/* GIC_ROS2, GIC_ROS3 and GIC_IMEX are implicit, of order 2, 3 and 2: for models with gic_model.implicit alone. */
-typedef enum gic_method { GIC_AB3 = 0, GIC_RK4 = 1, GIC_ROS2 = 2, GIC_ROS3 = 3, GIC_IMEX = 4 } gic_method;
+/* GIC_ROS2, GIC_ROS3 and GIC_IMEX are implicit, of order 2, 3 and 2: for models with gic_model.implicit alone. GIC_EXP3
+ * is exponential, of order 3: for those whose gic_implicit.exponential_offset is not 0. */
+typedef enum gic_method { GIC_AB3 = 0, GIC_RK4 = 1, GIC_ROS2 = 2, GIC_ROS3 = 3, GIC_IMEX = 4, GIC_EXP3 = 5 } gic_method;
 
 /* If set, called before every evaluation: set input[] to the values at `time`. */
 typedef void gic_input_function(void *user, int32_t lane, gic_real time, gic_real *input);
@@ -135,7 +136,7 @@ typedef struct gic_head {
                           * don't need it; other integrators may set it */
     int64_t steps;       /* time = start_time + steps * step, so that no error accumulates */
     int32_t method;      /* of the last step; a change restarts the multistep history */
-    int32_t history;     /* rates kept for AB3: 0, 1 or 2; for IMEX 0 or 1 */
+    int32_t history;     /* rates kept for AB3: 0, 1 or 2; for IMEX and EXP3 0 or 1 */
     int32_t ratio;       /* of the last step: number of fast steps, 1: single rate; a change restarts the history too */
     int32_t lane;        /* for the caller: the index of this vehicle among many */
     int32_t flip;        /* index of the last good Newton start */
@@ -228,7 +229,8 @@ typedef struct gic_self_test {
 
 /* In an instance with implicit steps. */
 typedef struct gic_implicit_head {
-    int32_t keep;      /* for the caller: the most steps that are made with one Jacobian; 0 or 1: each has its own */
+    int32_t keep;      /* for the caller: the most steps that are made with one Jacobian; 0 or 1: each has its own, but
+                        * GIC_EXP3 makes all steps with its first one */
     int32_t used;      /* steps made with the present factors; 0: there are none */
     int32_t exchanged; /* the present factors are the runtime's own, with rows exchanged */
     gic_real reach;    /* gamma * step, s, of the factors */
@@ -237,7 +239,9 @@ typedef struct gic_implicit_head {
     int32_t shared; /* pieces of the next one that are made */
     int32_t lost;   /* the next one's factors need rows exchanged */
     int32_t second; /* the present Jacobian stands in the second of two places */
-    int64_t jacobian_count; /* Jacobians evaluated and factorized */
+    int32_t spent;  /* of GIC_EXP3: steps made with the present exponentials */
+    gic_real span;  /* step, s, of these; 0: there are none. For the caller: 0, so that the next step makes new ones */
+    int64_t jacobian_count; /* Jacobians evaluated, and factorized or made into exponentials */
 } gic_implicit_head;
 
 /* What implicit steps need of a model: code of gicgen --implicit. The unknowns of their linear systems are the states
@@ -272,11 +276,18 @@ typedef struct gic_implicit {
     const int32_t *share_work;
     int (*share)(void *self, gic_real time, const gic_real *state, int32_t first, int32_t end, gic_real reach,
                  gic_real *jacobian, gic_real *factor);
+    /* Code of gicgen --exponential: GIC_EXPONENTIAL(n) numbers in the instance, bytes; 0: there are none. */
+    size_t exponential_offset;
 } gic_implicit;
 
 #define GIC_SHARE_LOST 1
 
 #define GIC_IMPLICIT(n, columns) ((n) * ((columns) + (n) + 7) + (columns))
+
+/* Five functions of a matrix that stay, three matrices of work space, and a row: matrices by panels of so many rows,
+ * which take the place of full ones at their end. */
+#define GIC_PANEL 16
+#define GIC_EXPONENTIAL(n) ((8 * (((n) + GIC_PANEL - 1) / GIC_PANEL) * GIC_PANEL + 1) * (n))
 
 typedef struct gic_model {
     uint32_t abi_version; /* GIC_ABI_VERSION of the generated code */

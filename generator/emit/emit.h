@@ -27,6 +27,7 @@ typedef struct Style {
     bool derivatives;        /* the file has functions for derivatives too; not for one scene */
     bool implicit;           /* what implicit steps need; the same */
     bool spread;             /* with `implicit`: a Jacobian may be evaluated in shares, one a step */
+    bool exponential;        /* with `implicit`: room for exponential steps, too */
     bool exact;              /* with `implicit`: for integrators of a host, which want the Jacobian of accelerations */
     bool lanes;              /* numbers are vectors; a check that fails closes its lanes, and the function goes on */
     int width;               /* with `lanes`: lanes of a vector, with one subset a lane; 0: one vehicle a lane */

@@ -58,6 +58,8 @@ void write_implicit_members(void *context, Text *out, int indent)
     line(out, indent, "gic_implicit_head implicit; /* of implicit steps: .keep is for the caller */");
     line(out, indent, "gic_real implicit_number[GIC_IMPLICIT(%s_STATE_ROOM, %d) + %d%s];", g->upper,
          jacobian_columns(g), weighed ? weighed->masses : 0, is_spread(g) ? spread_numbers(g) : "");
+    if (g->style->exponential)
+        line(out, indent, "gic_real exponential[GIC_EXPONENTIAL(%s_STATE_ROOM)];", g->upper);
     line(out, indent, "int32_t implicit_pivot[%s];", /* C has no empty arrays */
          unknowns(g) ? pool_print(g->pool, "%s_IMPLICIT_UNKNOWNS", g->upper) : "1");
 }
@@ -175,6 +177,12 @@ static void write_mass_tables(void *context, Text *out, int indent)
         line(out, indent, "0, NULL, NULL,");
 }
 
+static void write_exponential(void *context, Text *out, int indent)
+{
+    const Generation *g = context;
+    line(out, indent, g->style->exponential ? "offsetof(%s, exponential)," : "0,", g->model->name);
+}
+
 static void write_share(void *context, Text *out, int indent)
 {
     Generation *g = context;
@@ -185,6 +193,7 @@ static void write_share(void *context, Text *out, int indent)
 
 static const Insertion implicit_point[] = {{"implicit weighed", write_weighed},
                                            {"implicit masses", write_mass_tables},
+                                           {"implicit exponential", write_exponential},
                                            {"implicit jacobian", write_jacobian_call},
                                            {"implicit elimination", write_elimination},
                                            {"implicit functions", write_functions},

@@ -65,7 +65,7 @@ void describe_units(Text *out, const Variables *all)
     text_print(out, "  </UnitDefinitions>\n");
 }
 
-void describe_methods(Text *out, int indent, bool implicit)
+void describe_methods(Text *out, int indent, int32_t last)
 {
     static const struct {
         const char *name, *description;
@@ -73,9 +73,9 @@ void describe_methods(Text *out, int indent, bool implicit)
                 {"RK4", "Runge-Kutta of order 4"},
                 {"ROS2", "implicit: Rosenbrock-W of order 2"},
                 {"ROS3", "implicit: Rosenbrock-W of order 3"},
-                {"IMEX", "implicit: backward differentiation of order 2, in the forces alone"}};
-    const int count = (implicit ? GIC_IMEX : GIC_RK4) + 1;
-    for (int i = 0; i < count; ++i)
+                {"IMEX", "implicit: backward differentiation of order 2, in the forces alone"},
+                {"EXP3", "exponential, of order 3"}};
+    for (int i = 0; i <= last; ++i)
         text_print(out, "%*s<Item name=\"%s\" value=\"%d\" description=\"%s\"/>\n", indent, "", item[i].name, i + 1,
                    item[i].description);
 }

@@ -98,7 +98,7 @@ void describe_2(Text *out, const Description *d)
     describe_units(out, all);
     text_print(out, "  <TypeDefinitions>\n    <SimpleType name=\"solver_method\" description=\"integrator\">\n"
                     "      <Enumeration>\n");
-    describe_methods(out, 8, d->implicit);
+    describe_methods(out, 8, d->last_method);
     text_print(out, "      </Enumeration>\n    </SimpleType>\n  </TypeDefinitions>\n");
     describe_log(out);
     describe_experiment(out, &d->experiment);

@@ -99,7 +99,7 @@ void describe_3(Text *out, const Description *d)
     describe_interfaces(out, d);
     describe_units(out, all);
     text_print(out, "  <TypeDefinitions>\n    <EnumerationType name=\"solver_method\" description=\"integrator\">\n");
-    describe_methods(out, 6, d->implicit);
+    describe_methods(out, 6, d->last_method);
     text_print(out, "    </EnumerationType>\n  </TypeDefinitions>\n");
     describe_log(out);
     describe_experiment(out, &d->experiment);

@@ -28,10 +28,11 @@ static void check_scene(const Scene *scene)
     if (scene->rest)
         diag_fail(scene_place(scene, "sleep"), "leave out `sleep`", "a vehicle in an FMU never sleeps");
     if (scene->method >= METHOD_ADAMS)
-        diag_fail(scene_place(scene, "integrator"),
-                  "write `integrator: ab3`, `rk4`, `ros2`, `ros3` or `imex` and a `step`; in model exchange the "
-                  "importer takes steps of its own",
-                  "co-simulation of an FMU has constant steps, not those of %s", integrator_name(scene->method));
+        diag_fail(
+            scene_place(scene, "integrator"),
+            "write `integrator: ab3`, `rk4`, `ros2`, `ros3`, `imex` or `exp3` and a `step`; in model exchange the "
+            "importer takes steps of its own",
+            "co-simulation of an FMU has constant steps, not those of %s", integrator_name(scene->method));
     if (scene->most_work)
         diag_fail(scene_place(scene, "most_work"), "leave out `most_work`",
                   "an FMU does not bound the work of its steps yet");
@@ -150,7 +151,9 @@ static void add_files(Members *members, int version, const Formulation *f, const
                      .out = dependences_of_outputs(pool, f, rate),
                      .place = dependences_of_places(pool, f),
                      .derivatives = style->derivatives,
-                     .implicit = style->implicit};
+                     .last_method = style->exponential ? GIC_EXP3
+                                    : style->implicit  ? GIC_IMEX
+                                                       : GIC_RK4};
     void (*const describe)(Text *, const Description *) = version == 2 ? describe_2 : describe_3;
     Text draft = {.pool = pool};
     describe(&draft, &d);

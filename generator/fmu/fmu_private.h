@@ -98,8 +98,8 @@ typedef struct Description {
     const char *token;
     const char *const *source; /* names of the C files, NULL at the end */
     const Dependence *rate, *out, *place;
-    bool derivatives; /* directional ones are provided */
-    bool implicit;    /* solver.method may be an implicit one */
+    bool derivatives;    /* directional ones are provided */
+    int32_t last_method; /* the last gic_method that solver.method may be */
 } Description;
 
 /* ` name="text"`, escaped. */
@@ -112,7 +112,7 @@ void xml_whole(Text *out, const char *name, long value);
 void describe_dependencies(Text *out, const Description *d, const Variable *unknown, bool references);
 void describe_units(Text *out, const Variables *all);
 /* Items of the enumeration of solver.method. */
-void describe_methods(Text *out, int indent, bool implicit);
+void describe_methods(Text *out, int indent, int32_t last);
 void describe_log(Text *out);
 void describe_experiment(Text *out, const Experiment *experiment);
 

@@ -406,7 +406,7 @@ static void add_solver(Making *m, bool implicit, bool shares)
     add_step_count(m, 2, "solver.ratio", "with AB3: steps of wheels and powertrain in a step of the bodies", GIC_RATIOS,
                    experiment.ratio);
     if (implicit)
-        add_step_count(m, 3, "solver.keep_jacobian", "with ROS2, ROS3, IMEX: steps with one Jacobian", KEEP_MOST,
+        add_step_count(m, 3, "solver.keep_jacobian", "with implicit methods: steps with one Jacobian", KEEP_MOST,
                        experiment.keep);
     if (shares) {
         add_step_count(m, 4, "solver.spread_jacobian", "1: steps that keep a Jacobian make the next one by shares", 1,

@@ -165,7 +165,7 @@ static void add_all(Study *study)
     if (!is_stiff(study->scene))
         return;
     const int32_t keep = study->scene->keep;
-    for (int32_t method = GIC_ROS2; method <= GIC_IMEX; ++method) {
+    for (int32_t method = GIC_ROS2; method <= GIC_EXP3; ++method) {
         add_parts(study, integrator_name(method), "", IMPLICIT, method, (Ride){.ratio = 1});
         if (keep > 1)
             add_parts(study, integrator_name(method), pool_print(study->bench->pool, ", a Jacobian for %d steps", keep),
@@ -373,6 +373,7 @@ static void tell_begin(const Bench *bench, const char *engine)
         "`late gears`, for scenes in which the gear changes, leaves it to the end of the step in which it is due. "
         "`contacts located`, for scenes in which wheels or stops get or lose their load, makes steps in parts there "
         "(`locate: true`). Variable steps end at both. Scenes with an implicit integrator (`ros2`, `ros3`, `imex`, "
+        "`exp3`, "
         "`bdf`) "
         "are gone by all of these too, and times are compared at equal errors.");
 }
@@ -412,7 +413,7 @@ static int measure_vehicle(const Bench *bench, const Vehicle *vehicle, int done,
     if (stiff && !engine_has_implicit(bench->engine_name))
         diag_fail((Place){vehicle->scene[0]->source, 0, 0}, "take --engines cc or tcc",
                   "the engine '%s' has no derivatives for implicit steps", bench->engine_name);
-    options.implicit = stiff;
+    options.implicit = options.exponential = stiff;
     const Engine *engine = engine_open(pool, bench->engine_name, vehicle->model, &options), *exact = NULL;
     options.exact = true;
     if (stiff && stepper_there(METHOD_BDF))

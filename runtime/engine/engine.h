@@ -81,6 +81,7 @@ typedef struct EngineOptions {
     const char *flags;    /* more options, after the default ones */
     const char *object;   /* a copy of the compiled object goes there; NULL: nowhere */
     bool implicit;        /* code that takes implicit steps too; not with facts and lanes */
+    bool exponential;     /* with it: exponential steps, too */
     bool spread;          /* with it: a Jacobian may be made by shares */
     bool exact;           /* with it: gic_implicit.jacobian has all derivatives of the rates, for `bdf` */
     bool single;          /* the flags make the code single precision; the caller handles its numbers */

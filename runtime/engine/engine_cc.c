@@ -246,6 +246,7 @@ static Build build_new(Pool *pool, const Formulation *formulation, const EngineO
     b.c.pool = b.h.pool = b.batch_c.pool = b.batch_h.pool = pool;
     Style style = style_readable;
     style.implicit = options->implicit;
+    style.exponential = options->exponential;
     style.spread = options->spread;
     style.exact = options->exact;
     generate(pool, formulation, &style, NULL, "model.h", &b.c, &b.h);

@@ -69,7 +69,7 @@ static const char help[] =
     "      --trace FILE   of --manoeuvre: what the vehicle did, as CSV\n"
     "      --report FILE  of --kc, --manoeuvre and --vary: a page of curves\n"
     "      --compare FILE with --kc, --sheet, --manoeuvre: another beside it, or a scene\n"
-    "      --integrator NAME  ab3, rk4, ros2, ros3, imex, adams, rkck, bdf, auto, not the scene's\n"
+    "      --integrator NAME  ab3, rk4, ros2, ros3, imex, exp3, adams, rkck, bdf, auto\n"
     "      --tolerance NUMBER of these\n"
     "      --engine NAME  auto (default): generated code compiled in this process (tcc), in a\n"
     "                     long run by the C compiler too (cc); tape, gic, gcp1, gcp2;\n"
@@ -326,7 +326,8 @@ static Asked read_command_line(int count, char **word)
                                      : "derivatives are those of the engine tape: --optimize does not go with --engine",
                    asked.options.engine);
     if (asked.options.integrator && !known("integrator", asked.options.integrator))
-        usage_fail("gicrun", "there are ab3, rk4, ros2, ros3, imex, adams, rkck, bdf and auto; there is no integrator",
+        usage_fail("gicrun",
+                   "there are ab3, rk4, ros2, ros3, imex, exp3, adams, rkck, bdf and auto; there is no integrator",
                    asked.options.integrator);
     if (study->plot && !runs)
         usage_fail("gicrun",

@@ -113,8 +113,8 @@ typedef struct gicl_options {
     const char *recovery; /* "auto", "newton", "closed" */
     const char *compiler; /* of "cc": a command */
     const char *flags;    /* more options for it */
-    /* instead of the scenes': "ab3", "rk4", "ros2", "ros3", "imex", "adams", "rkck", "bdf", "auto". With "ros2", "ros3"
-     * or "imex" code of instances and batches has implicit steps */
+    /* instead of the scenes': "ab3", "rk4", "ros2", "ros3", "imex", "exp3", "adams", "rkck", "bdf", "auto". With
+     * "ros2", "ros3", "imex" or "exp3" code of instances and batches has implicit steps */
     const char *integrator;
     double tolerance; /* of variable steps, instead of the scenes' */
     int general;      /* 1: gicl_run() uses code as for any scene, as gicrun --general does */

@@ -82,7 +82,7 @@ static void take_options(OpenModel *model, const gicl_options *given)
     if (model->options.recovery >= RECOVERY_POLYNOMIAL)
         option_fail("recovery", o->recovery, "one of auto, newton, closed");
     if (o->integrator && integrator_method(o->integrator) < 0)
-        option_fail("integrator", o->integrator, "one of ab3, rk4, ros2, ros3, imex, adams, rkck, bdf, auto");
+        option_fail("integrator", o->integrator, "one of ab3, rk4, ros2, ros3, imex, exp3, adams, rkck, bdf, auto");
     model->integrator = o->integrator ? kept(pool, o->integrator, "") : NULL;
     model->tolerance = o->tolerance;
     if (o->tolerance != 0 && !tolerance_known(o->tolerance))
@@ -230,6 +230,7 @@ const Engine *model_code(const OpenModel *model, Pool *pool, bool spread)
     EngineOptions options = model->options;
     options.lanes = 0; /* of runs alone */
     options.implicit = model_implicit(model) && engine_has_implicit(name);
+    options.exponential = options.implicit && integrator_method(model->integrator) == GIC_EXP3;
     options.spread = options.implicit && spread;
     return engine_open(pool, name, model_for(model, pool), &options);
 }

@@ -45,6 +45,9 @@ static const Engine *open_lanes(Pool *pool, const Making *making, bool spread, c
     EngineOptions options = model->options;
     options.implicit = model_implicit(model);
     options.spread = spread;
+    if (model->integrator && integrator_method(model->integrator) == GIC_EXP3)
+        diag_fail((Place){model->model->source, 0, 0}, "let them make their steps one after another: lanes 1",
+                  "code for many vehicles at once has no exponential steps");
     const Engine *engine = engine_batch(pool, model_for(model, pool), &options, &batch, IN_LANES_AS_ALONE, many, &why);
     if (!engine)
         diag_fail((Place){model->model->source, 0, 0}, "let them make their steps one after another: lanes 1",
@@ -203,10 +206,14 @@ int vehicle_start(const Vehicles *vehicles, int v, const double *parameter)
 
 int vehicles_lack(const Vehicles *vehicles, int method, gicl_messages *said)
 {
-    if (!method_implicit(method) || vehicles->code->implicit)
+    const gic_implicit *implicit = vehicles->code->implicit;
+    if (!method_implicit(method) || (implicit && (method != GIC_EXP3 || implicit->exponential_offset > 0)))
         return GICL_OK;
-    return call_wrong(said, "open the model with the integrator ros2, ros3 or imex, by an engine of generated code",
-                      "its code has no implicit steps");
+    return call_wrong(said,
+                      method == GIC_EXP3
+                          ? "open the model with the integrator exp3, by an engine of generated code"
+                          : "open the model with the integrator ros2, ros3 or imex, by an engine of generated code",
+                      method == GIC_EXP3 ? "its code has no exponential steps" : "its code has no implicit steps");
 }
 
 int vehicle_step(const Vehicles *vehicles, int v, double step, int method, int ratio, int64_t steps)
@@ -237,7 +244,7 @@ int vehicle_outputs(const Vehicles *vehicles, int v)
 void lanes_step(const Vehicles *vehicles, double step, int method, int ratio, int64_t steps)
 {
     const gic_batch_model *many = vehicles->many;
-    const bool implicit = many->model->implicit && method_implicit(method);
+    const bool implicit = many->model->implicit && method_implicit(method) && method != GIC_EXP3;
     const bool known = ratio == 1 ? method == GIC_AB3 || method == GIC_RK4 || implicit : ratio > 1 && method == GIC_AB3;
     for (int v = 0; v < vehicles->count && !known; ++v)
         vehicle_of(vehicles, v)->status = GIC_ERROR_ARGUMENT;

@@ -92,6 +92,7 @@ static const char *jit_text(Pool *pool, const Model *model, const EngineOptions 
     formulation_validate(pool, formulation, options->validation);
     Style style = style_direct;
     style.implicit = options->implicit;
+    style.exponential = options->exponential;
     style.spread = options->spread;
     style.exact = options->exact;
     generate(pool, formulation, &style, NULL, NULL, &c, &h);

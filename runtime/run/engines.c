@@ -89,6 +89,7 @@ const Engine *engine_open_run(Pool *pool, const char *name, const Model *model, 
     EngineOptions own = *options;
     own.exact = scene->method == METHOD_BDF && engine_has_implicit(name);
     own.implicit = scene_implicit(scene) || own.exact;
+    own.exponential = scene->method == GIC_EXP3;
     own.spread = scene->spread;
     stepper_need(scene->method);
     if (scene_implicit(scene))

@@ -9,6 +9,8 @@ int knots_cross(const gic_model *model, const Scene *scene, gic_head *self, doub
 {
     const double now = gic_time(self);
     int status = GIC_OK;
+    if (scene->method == GIC_EXP3 && scene_next_knot(scene, start) <= now)
+        self->history = 0;     /* a bend is no part of a parabola */
     if (scene_implicit(scene)) /* their stages see the inputs' change within the step */
         return GIC_OK;
     /* the rates that AB3 has of a start, or after a change of gear, are summed otherwise, as are parts of a step */

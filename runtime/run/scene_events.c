@@ -186,7 +186,7 @@ static int move_to(SceneEvents *events, const gic_model *model, Variable *variab
         status = scene_step_awake(events->engine, model, scene, variable, self, time);
     const double way = time - gic_time(self), part = way / scene->ratio;
     for (int i = 0; !variable && i < scene->ratio && status == GIC_OK && gic_time(self) + part > gic_time(self); ++i)
-        status = gic_step(model, self, part, scene_implicit(scene) ? scene->method : GIC_RK4);
+        status = gic_step(model, self, part, scene_method_of_parts(scene));
     if (status == GIC_OK)
         gic_restart(self, time);
     if (variable)

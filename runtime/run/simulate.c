@@ -596,7 +596,7 @@ static int piece_of_step(void *caller, gic_head *self, double end)
     while (part.variable && status == GIC_OK && gic_time(self) < end)
         status = any_step(&part, self);
     for (int i = 0; !part.variable && i < parts && status == GIC_OK; ++i)
-        status = gic_step(part.model, self, length / parts, scene_implicit(part.scene) ? part.scene->method : GIC_RK4);
+        status = gic_step(part.model, self, length / parts, scene_method_of_parts(part.scene));
     if (status == GIC_OK && !part.variable) {
         gic_restart(self, end); /* the time as it is, not as a sum */
         if (self->input_function)

@@ -56,9 +56,12 @@ double step_growth(int32_t method, double real, double imaginary)
 /* ---- longest steps ---------------------------------------------------------------------------------------------- */
 
 /* The stability function of order 3 with a pole of order 4 at 1 / gamma and a zero at infinity is one alone; that of
- * order 2 with a pole of order 2 too. Of the second-order backward formula, the root that is exp(z) for small z. */
+ * order 2 with a pole of order 2 too. Of the second-order backward formula, the root that is exp(z) for small z. EXP3
+ * has no error where rates are linear. */
 static double complex implicit_factor(int32_t method, double complex z)
 {
+    if (method == GIC_EXP3)
+        return cexp(z);
     if (method == GIC_IMEX)
         return (2 + csqrt(1 + 2 * z)) / (3 - 2 * z);
     if (method == GIC_ROS2) {

@@ -86,9 +86,9 @@ enum { AUTOMATIC = 1000 }; /* what `auto` is until the scene is read */
 static const struct {
     const char *name;
     int32_t method;
-} integrators[] = {{"ab3", GIC_AB3},      {"rk4", GIC_RK4},    {"ros2", GIC_ROS2},
-                   {"ros3", GIC_ROS3},    {"imex", GIC_IMEX},  {"adams", METHOD_ADAMS},
-                   {"rkck", METHOD_RKCK}, {"bdf", METHOD_BDF}, {"auto", AUTOMATIC}};
+} integrators[] = {{"ab3", GIC_AB3},    {"rk4", GIC_RK4},   {"ros2", GIC_ROS2},      {"ros3", GIC_ROS3},
+                   {"imex", GIC_IMEX},  {"exp3", GIC_EXP3}, {"adams", METHOD_ADAMS}, {"rkck", METHOD_RKCK},
+                   {"bdf", METHOD_BDF}, {"auto", AUTOMATIC}};
 
 enum { INTEGRATORS = sizeof integrators / sizeof *integrators };
 
@@ -115,12 +115,17 @@ const char *integrator_name(int32_t method)
 
 bool method_implicit(int32_t method)
 {
-    return method >= GIC_ROS2 && method <= GIC_IMEX;
+    return method >= GIC_ROS2 && method <= GIC_EXP3;
 }
 
 bool scene_implicit(const Scene *scene)
 {
     return method_implicit(scene->method);
+}
+
+int32_t scene_method_of_parts(const Scene *scene)
+{
+    return !scene_implicit(scene) ? GIC_RK4 : scene->method == GIC_EXP3 ? GIC_ROS3 : scene->method;
 }
 
 Place scene_place(const Scene *scene, const char *key)
@@ -159,7 +164,7 @@ static void read_integrator(Reader *reader, const Item *root, const char *integr
     const Item *method = doc_find(root, "integrator"), *limit = doc_find(root, "tolerance");
     const char *word = method ? doc_word(method, "integrator") : "ab3";
     if (integrator_method(word) < 0)
-        diag_fail(method->at, "write ab3, rk4, ros2, ros3, imex, adams, rkck, bdf or auto",
+        diag_fail(method->at, "write ab3, rk4, ros2, ros3, imex, exp3, adams, rkck, bdf or auto",
                   "there is no integrator '%s'", word);
     scene->method = integrator_method(integrator ? integrator : word);
     scene->automatic = scene->method == AUTOMATIC;
@@ -212,20 +217,24 @@ static void read_keep(Reader *reader, const Item *item, bool replaced)
         diag_fail(item->at, "write how many steps are made with one Jacobian, for example 4",
                   "keep_jacobian must be a whole number from 1 to %d", KEEP_MOST);
     if (!scene_implicit(reader->scene) && !reader->scene->automatic && !replaced)
-        diag_fail(item->at, "remove it, or write `integrator: ros2`, `ros3` or `imex`",
+        diag_fail(item->at, "remove it, or write `integrator: ros2`, `ros3`, `imex` or `exp3`",
                   reader->scene->method == METHOD_BDF ? "%s decides itself how long it keeps a Jacobian"
                                                       : "%s needs no Jacobian",
                   integrator_name(reader->scene->method));
+    if (reader->scene->method == GIC_EXP3 && keep == 1 && !replaced)
+        diag_fail(item->at, "write 2 or more, or remove it: all steps are made with the first one then",
+                  "exp3 has no new Jacobian for each step, as exponentials of it take many steps' work");
     reader->scene->keep = (int32_t)keep;
 }
 
 static void read_spread(Reader *reader, const Item *item, bool replaced)
 {
     Scene *scene = reader->scene;
-    scene->spread = doc_bool(item, "spread_jacobian") && scene_implicit(scene);
-    if (!scene_implicit(scene) && !replaced)
+    const bool shares = scene_implicit(scene) && scene->method != GIC_EXP3;
+    scene->spread = doc_bool(item, "spread_jacobian") && shares;
+    if (!shares && !replaced)
         diag_fail(item->at, "remove it, or write `integrator: ros2`, `ros3` or `imex`",
-                  "spread_jacobian is for implicit steps");
+                  "spread_jacobian is for implicit steps by these");
     if (scene->spread && scene->keep < 2)
         diag_fail(item->at, "write for example `keep_jacobian: 16`, or remove it",
                   "spread_jacobian needs a Jacobian that is kept for 2 steps or more, which share its work");

@@ -51,6 +51,7 @@ static const Engine *open_lanes_or_one(Pool *pool, const SweepRequest *request, 
     const char *why = lanes_unfit(scene, model);
     EngineOptions code = request->code;
     code.implicit = scene_implicit(scene);
+    code.exponential = scene->method == GIC_EXP3;
     code.spread = scene->spread;
     if (request->engine && !engine_has_implicit(request->engine))
         scene_no_implicit(scene, pool_print(pool, "the engine '%s'", request->engine));

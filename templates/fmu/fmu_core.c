@@ -411,10 +411,13 @@ fmu_result fmu_set_integer(fmu_instance *instance, uint32_t reference, int32_t v
         return fmu_say(instance, FMU_ERROR, "the variable with value reference %u can't be set now",
                        (unsigned)reference);
     if (kind == FMU_SOLVER && i == FMU_SOLVER_METHOD) {
-        const int32_t most = (model->implicit ? GIC_IMEX : GIC_RK4) + 1;
+        const int32_t own = !model->implicit ? GIC_RK4 : model->implicit->exponential_offset ? GIC_EXP3 : GIC_IMEX;
+        const int32_t most = own + 1;
         if (value < GIC_AB3 + 1 || value > most)
             return fmu_say(instance, FMU_DISCARD, "solver.method is %s, not %d",
-                           model->implicit ? "1 (AB3), 2 (RK4), 3 (ROS2), 4 (ROS3) or 5 (IMEX)" : "1 (AB3) or 2 (RK4)",
+                           own == GIC_EXP3   ? "1 (AB3), 2 (RK4), 3 (ROS2), 4 (ROS3), 5 (IMEX) or 6 (EXP3)"
+                           : model->implicit ? "1 (AB3), 2 (RK4), 3 (ROS2), 4 (ROS3) or 5 (IMEX)"
+                                             : "1 (AB3) or 2 (RK4)",
                            (int)value);
         data->method = value;
     } else if (kind == FMU_SOLVER && i == FMU_SOLVER_RATIO) {

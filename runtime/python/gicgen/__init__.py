@@ -22,7 +22,7 @@ from ._library import Error, Handle, RunError, VERSION as __version__, WrongCall
 __all__ = ["Batch", "Error", "Instance", "Linear", "Model", "Named", "RunError", "Table", "UnknownName",
            "WrongCall"]
 
-_METHODS = {"ab3": 0, "rk4": 1, "ros2": 2, "ros3": 3, "imex": 4}
+_METHODS = {"ab3": 0, "rk4": 1, "ros2": 2, "ros3": 3, "imex": 4, "exp3": 5}
 _KINDS = {"states": (_library.STATE, "state"), "rates": (_library.RATE, "rate"), "inputs": (_library.INPUT, "input"),
           "outputs": (_library.OUTPUT, "output"), "parameters": (_library.PARAMETER, "parameter"),
           "ports": (_library.PORT, "port")}
@@ -34,7 +34,7 @@ def _bytes(text):
 
 def _method(name):
     if name not in _METHODS:
-        raise ValueError(f"method: 'ab3' or 'rk4', or implicit 'ros2', 'ros3' or 'imex', is wanted, not {name!r}")
+        raise ValueError(f"method: 'ab3' or 'rk4', implicit 'ros2', 'ros3' or 'imex', or 'exp3' is wanted, not {name!r}")
     return _METHODS[name]
 
 
@@ -355,7 +355,8 @@ class Instance:
 
     def step(self, step, steps=1, method="ab3", ratio=1):
         """`steps` steps of `step` seconds, inputs constant; ratio: of ab3, fast steps of wheels and powertrain in each.
-        method: 'ab3' or 'rk4'; 'ros2', 'ros3' or 'imex' of a model that was opened with one of them as integrator."""
+        method: 'ab3' or 'rk4'; 'ros2', 'ros3', 'imex' or 'exp3' of a model that was opened with
+        it as integrator."""
         call("step", self._handle, _number(step, "step"), _method(method), _ratio(ratio),
              _steps(steps))
 
