@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# implicit.sh GICGEN [FLAG...]: steps of the hatchback on its bushings, ab3 and rk4 against ros2, ros3 and imex, with its parts one after another
+# implicit.sh GICGEN [FLAG...]: steps of the hatchback on its bushings, ab3 and rk4 against ros2, ros3, imex and exp3, with its parts one after another
 # and in lanes of 4 (environment LANES: another width), by turns in one run, with the error of the place after a second in a crosswind, from where
 # the model is drawn, against rk4 at 31 us, and the longest step of each (implicit.c); the code is compiled with `-O2 -march=native` or the FLAGs,
 # which takes minutes.
@@ -12,8 +12,8 @@ model=$here/../../models/hatchback.veh
 work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
 cd "$work" || exit 1
-"$gicgen" --implicit --spread-jacobian "$model" -o hatchback.c &&
-    "$gicgen" --implicit --spread-jacobian --lanes "${LANES:-4}" "$model" -o lanes.c || exit 1
+"$gicgen" --implicit --exponential --spread-jacobian "$model" -o hatchback.c &&
+    "$gicgen" --implicit --exponential --spread-jacobian --lanes "${LANES:-4}" "$model" -o lanes.c || exit 1
 for part in c h; do # both codes in one program: names of their own
     sed 's/"lanes\.h"/"hatchback.h"/; s/hatchback/hatchback_lanes/g; s/HATCHBACK/HATCHBACK_LANES/g' "lanes.$part" >"hatchback_lanes.$part"
 done
