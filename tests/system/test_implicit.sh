@@ -1,10 +1,10 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# test_implicit.sh GICGEN GICRUN: implicit steps (ros2, ros3, imex) of models. A body on a stiff bushing against its closed form
+# test_implicit.sh GICGEN GICRUN: implicit steps (ros2, ros3, imex) and exponential ones (exp3) of models. A body on a stiff bushing against its closed form
 # and its static displacement; van der Pol's oscillator and Prothero and Robinson's problem as models; orders of whole
 # vehicles, with Jacobians that are kept; contacts, gears, controllers; a parked vehicle that must not creep; energy over
 # a long run; bits of all compilers; embedded code in both number types; what is refused. The methods themselves are in
-# unit/test_rosenbrock.c.
+# unit/test_rosenbrock.c and unit/test_exponential.c.
 gicgen=$(realpath "$1")
 gicrun=$(realpath "$2")
 root=$(cd "$(dirname "$0")/../.." && pwd)
@@ -107,6 +107,29 @@ run -q harder.veh fresh.scene -o harder.csv
 off=$(tail -n 1 harder.csv | awk -F, '{ p = 3000 * sin(0.4 * 3.14159265358979312); d = (2e6 * $2 + 2e14 * $2 ^ 3) / p - 1; print (d < 0 ? -d : d) }')
 check "a force that gets stiffer, imex: ${off:-no run}" within "${off:-1}" 1e-4
 
+# ---- exp3: where rates are linear nothing but rounding is off, at steps of a radian, and of 25 for what is at rest
+scene 0.02 0.001 'integrator: exp3' 'initial: {coordinates: {x: 0.001}}' 'outputs: [x.value]' >mount.scene
+run -q mount.veh mount.scene -o own.csv
+off=$(apart own.csv mount.csv)
+check "a body on a bushing, exp3: $off m of 0.001" within "$off" 1e-15
+scene 20 0.025 'integrator: exp3' 'inputs: {push: 3000}' 'outputs: [x]' >static.scene
+run -q mount.veh static.scene -o static.csv
+x=$(tail -n 1 static.csv | cut -d, -f2)
+check "the static displacement by exp3: $x" within "$(awk "BEGIN { d = $x / 0.0015 - 1; print d < 0 ? -d : d }")" 1e-12
+scene 0.1 0.0002 'integrator: exp3' 'initial: {coordinates: {x: 0.001}}' 'outputs: [x]' >swing.scene
+run -q swing.veh swing.scene -o swing.csv
+off=$(tail -n 1 swing.csv | awk -F, '{ d = $2 * $2 * 1e6 + $3 * $3 - 1; print (d < 0 ? -d : d) }')
+check "energy on a bushing without damping, exp3: ${off:-no run}" within "${off:-1}" 1e-12
+# a force that is 17 times as stiff as the matrix of the first step has it: 4100 rad/s, of which steps of 1 ms bear 1200
+sed 's/imex/exp3/; s/^keep.*/keep_jacobian: 1000/' harder.scene >aged.scene
+run -q harder.veh aged.scene -o harder.csv
+{ [ "$status" -ne 0 ] && says 'error: ' && says 'x'; }
+verdict $? "exponentials that are too old: $(head -n 1 err)"
+sed 's/^keep.*/keep_jacobian: 2/' aged.scene >fresh.scene
+run -q harder.veh fresh.scene -o harder.csv
+off=$(tail -n 1 harder.csv | awk -F, '{ p = 3000 * sin(0.4 * 3.14159265358979312); d = (2e6 * $2 + 2e14 * $2 ^ 3) / p - 1; print (d < 0 ? -d : d) }')
+check "a force that gets stiffer, exp3: ${off:-no run}" within "${off:-1}" 1e-4
+
 # ---- light upper arms with their masses, 5 ms: nearer to variable steps than AB3 with the same
 sed 's/^output_step: .*/output_step: 0.1/' "$models/scenes/hmmwv14.scene" >light.scene
 run -q --integrator adams --tolerance 1e-11 "$models/hmmwv14.veh" light.scene -o light.csv
@@ -151,6 +174,11 @@ for method in 2 3; do
     check "in the limit the place is that of the cosine, ros$method: $(apart limit.csv cosine.csv)" within "$(apart limit.csv cosine.csv)" "$most"
     check "and that of ab3, ros$method: $(apart limit.csv explicit.csv)" within "$(apart limit.csv explicit.csv)" "$most"
 done
+
+scene 1 0.05 'integrator: exp3' 'initial: {coordinates: {q: 2}}' 'outputs: [q.value]' >turning.scene
+run -q turning.veh turning.scene -o turning.csv
+off=$(apart turning.csv cosine.csv)
+check "a pendulum on a bushing at 2 rad in steps of 5 radians, exp3: $off" within "$off" 1e-11
 
 # ---- van der Pol's oscillator and Prothero and Robinson's problem as a model's own states
 cat >problems.veh <<'END'
@@ -224,6 +252,29 @@ done
 scene 0.4 @ 'integrator: imex' >imex.scene
 cat steering >>imex.scene
 order 'tires and powertrain, imex' "$models/hmmwv_vehicle.veh" complete.csv 32 1.85 2.3 imex.scene
+for keep in 2 7 1000; do # the last one: all
+    scene 0.4 @ 'integrator: exp3' "keep_jacobian: $keep" >exp3.scene
+    cat waves >>exp3.scene
+    order "a vehicle, exp3, kept $keep steps" "$models/hmmwv.veh" car.csv 64 2.85 3.3 exp3.scene
+done
+# with tires its error is that of a bend of the engine's table, as rk4's is: a tenth of that of ros3
+for method in ros3 exp3; do
+    sed "s/@/0.00125/; s/^integrator: .*/integrator: $method/" complete.scene >tenth.scene
+    run -q "$models/hmmwv_vehicle.veh" tenth.scene -o "$method.csv"
+done
+off=$(apart exp3.csv complete.csv)
+check "tires and powertrain, exp3: $off, ros3: $(apart ros3.csv complete.csv)" within "$(awk "BEGIN { print 10 * $off }")" "$(apart ros3.csv complete.csv)"
+# the hatchback on its bushings, let go in a crosswind: its place after a second has no more error by exp3 at 1 ms than
+# by ab3 at a quarter of it, but for what bends of tables within steps do by chance
+for how in 'rk4 0.00003125' 'ab3 0.00025' 'exp3 0.001'; do
+    scene 1 "${how#* }" "integrator: ${how% *}" 'inputs: {crosswind: 20}' 'outputs: [body]' >wind.scene
+    "$gicrun" -q "$models/hatchback.veh" wind.scene -o "wind_${how% *}.csv" 2>err
+done
+for method in ab3 exp3; do tail -n 1 "wind_$method.csv" | cut -d, -f1-4 >"end_$method.csv"; done
+tail -n 1 wind_rk4.csv | cut -d, -f1-4 >end_rk4.csv
+by_ab3=$(apart end_ab3.csv end_rk4.csv)
+by_exp3=$(apart end_exp3.csv end_rk4.csv)
+check "hatchback, place by exp3 at 1 ms: $by_exp3, by ab3 at 0.25 ms: $by_ab3" within "$by_exp3" "$(awk "BEGIN { print 1.5 * $by_ab3 }")"
 # as RK4 in the limit
 for how in 'rk4 0.0001' 'ros3 0.0001'; do
     sed "s/@/${how#* }/; s/^integrator.*/integrator: ${how% *}/" car.scene | sed '/^keep/d' >limit.scene
@@ -245,11 +296,18 @@ run --integrator imex "$models/hmmwv_tires.veh" jump.scene -o own.csv
 check 'contacts located by imex' says 'contacts located'
 off=$(apart own.csv jump.csv)
 check "a jump, imex: $off" within "$off" 2e-2
+run --integrator exp3 "$models/hmmwv_tires.veh" jump.scene -o own.csv
+check 'contacts located by exp3' says 'contacts located'
+off=$(apart own.csv jump.csv)
+check "a jump, exp3: $off" within "$off" 5e-3
 # sampled controllers: parts of steps
 "$gicrun" -q "$models/controllers/skyhook.veh" "$models/controllers/skyhook.scene" -o rk4.csv --integrator rk4 2>err
 "$gicrun" -q "$models/controllers/skyhook.veh" "$models/controllers/skyhook.scene" -o ros3.csv --integrator ros3 2>err
 off=$(apart rk4.csv ros3.csv)
 check "controllers: ros3 against rk4: $off" within "$off" 2e-3
+"$gicrun" -q "$models/controllers/skyhook.veh" "$models/controllers/skyhook.scene" -o exp3.csv --integrator exp3 2>err
+off=$(apart rk4.csv exp3.csv)
+check "controllers: exp3 against rk4: $off" within "$off" 2e-3
 for step in 0.001 0.0005; do
     sed "s/^step: .*/step: $step/" "$models/controllers/skyhook.scene" >samples.scene
     "$gicrun" -q "$models/controllers/skyhook.veh" samples.scene -o imex.csv --integrator imex 2>err
@@ -259,7 +317,7 @@ by=$(awk -v a="$(cat off0.001)" -v b="$(cat off0.0005)" 'BEGIN { print (b > 0 ? 
 check "controllers: imex against rk4: $(cat off0.001), with half the step $(cat off0.0005)" within 3.5 "$by"
 
 # ---- parked on a slope at 10 ms, without creep
-for method in ros2 ros3 imex; do
+for method in ros2 ros3 imex exp3; do
     scene 20 0.01 "integrator: $method" 'outputs: [chassis]' >park.scene
     rest_of "$models/scenes/tires_park.scene" >>park.scene
     run -q "$models/hmmwv_tires.veh" park.scene -o park.csv
@@ -309,6 +367,12 @@ scene 1 0.01 'integrator: ab3' 'keep_jacobian: 4' >bad.scene
 refused 'ab3 needs no Jacobian' 'ros2' "$models/pendulum.veh" bad.scene -o none.csv
 scene 1 0.01 'integrator: ros2' 'keep_jacobian: 0' >bad.scene
 refused 'keep_jacobian must be a whole number from 1 to 1000' 'for example 4' "$models/pendulum.veh" bad.scene -o none.csv
+scene 1 0.01 'integrator: exp3' 'keep_jacobian: 1' >bad.scene
+refused 'exp3 has no new Jacobian for each step' 'write 2 or more' "$models/pendulum.veh" bad.scene -o none.csv
+scene 1 0.01 'integrator: exp3' 'keep_jacobian: 16' 'spread_jacobian: true' >bad.scene
+refused 'spread_jacobian is for implicit steps by these' 'imex' "$models/pendulum.veh" bad.scene -o none.csv
+scene 1 0.01 'integrator: exp3' 'ratio: 4' >bad.scene
+refused 'exp3 has one rate for everything' 'integrator: ab3' "$models/hmmwv_tires.veh" bad.scene -o none.csv
 scene 1 0.01 'integrator: ros3' >good.scene
 for engine in tape gic gcp1; do
     refused "the engine '$engine' does not take implicit steps (ros3) yet" 'rk4' --engine $engine "$models/pendulum.veh" good.scene -o none.csv
@@ -317,12 +381,12 @@ refused 'a page of --drive does not take implicit steps' 'rk4' --drive none.csv.
 scene 1 0.01 'integrator: ros4' >bad.scene
 refused "there is no integrator 'ros4'" 'ros2, ros3' "$models/pendulum.veh" bad.scene -o none.csv
 # code and units of a scene: neither another integrator than the scene's, nor one that has not been chosen
-for integrator in ros2 ros3 auto; do
+for integrator in ros2 ros3 exp3 auto; do
     scene 1 0.01 "integrator: $integrator" >good.scene
     wanted="does not take implicit steps ($integrator) yet"
     [ $integrator != auto ] || wanted='does not choose an integrator (auto) yet'
     for way in '-o none.c' '--fmu 3 -o none.fmu' '--report none.html'; do
-        case "$integrator $way" in ros*--fmu*) continue ;; esac # test_fmu_implicit.sh
+        case "$integrator $way" in [re]*--fmu*) continue ;; esac # test_fmu_implicit.sh
         # shellcheck disable=SC2086  # options
         "$gicgen" --scene good.scene $way "$models/hmmwv.veh" >out 2>err
         { [ $? -eq 1 ] && grep -q "^good.scene:.*error: .*$wanted" err && grep -q 'remedy: ' err && [ -z "$(ls none.* 2>/dev/null)" ]; }
@@ -336,8 +400,12 @@ for way in '--batch 4' "--scene $models/scenes/paper_run.scene" --sequence; do
     verdict $? "--implicit $way is refused"
 done
 
+"$gicgen" --exponential "$models/hmmwv.veh" -o none.c >out 2>err
+{ [ $? -eq 2 ] && grep -q 'it goes with --implicit' err && [ ! -e none.c ]; }
+verdict $? '--exponential without --implicit is refused'
+
 # ---- embedded: both number types, other compilers, no heap
-for name in hmmwv_vehicle pendulum; do "$gicgen" --implicit "$models/$name.veh" -o $name.c || exit 1; done
+for name in hmmwv_vehicle pendulum; do "$gicgen" --implicit --exponential "$models/$name.veh" -o $name.c || exit 1; done
 cp "$root"/runtime/gic_runtime.[ch] .
 cat >drive.c <<'END'
 #include "hmmwv_vehicle.h"
@@ -351,9 +419,9 @@ static hmmwv_vehicle car, copy;
 /* a second of braking, with a copy on the way */
 int main(void)
 {
-    static const gic_method methods[3] = {GIC_ROS2, GIC_ROS3, GIC_IMEX};
+    static const gic_method methods[4] = {GIC_ROS2, GIC_ROS3, GIC_IMEX, GIC_EXP3};
     int i, k;
-    for (i = 0; i < 3; ++i) {
+    for (i = 0; i < 4; ++i) {
         const gic_method method = methods[i];
         if (hmmwv_vehicle_setup(&car) != GIC_OK)
             return 1;
@@ -376,7 +444,7 @@ int main(void)
 }
 END
 # without the functions of --derivatives there is less code, and the same bits
-mkdir -p both && "$gicgen" --implicit --derivatives "$models/hmmwv_vehicle.veh" -o both/hmmwv_vehicle.c &&
+mkdir -p both && "$gicgen" --implicit --exponential --derivatives "$models/hmmwv_vehicle.veh" -o both/hmmwv_vehicle.c &&
     sed -e 's/%.9g/%a/' drive.c >bits.c && ! grep -q 'hmmwv_vehicle_tangent\|hmmwv_vehicle_jacobian(' hmmwv_vehicle.c &&
     grep -q 'int hmmwv_vehicle_jacobian(' both/hmmwv_vehicle.c
 verdict $? '--implicit by itself has no functions for derivatives'
