@@ -154,7 +154,8 @@ const char *alone_text(const Generation *g, const char *room, const char *array,
 extern const Insertions tangent_points, tangent_class_points, tangent_header_points;
 /* Are there functions along directions? With Style.derivatives, and for implicit steps without weighed_columns(). */
 bool has_tangents(Generation *g);
-void write_tangent_code(void *context, Text *out, int indent);
+/* Functions for derivatives along directions and for implicit steps, and what both call. */
+void write_derivative_code(void *context, Text *out, int indent);
 /* The blocks of tangents: of a class of subsets; of any other block. */
 const Block *class_tangent(const Generation *g, int class, bool still);
 const Block *whole_tangent(const Generation *g, const Block *block);
@@ -244,7 +245,7 @@ int implicit_unknowns(const Generation *g, int **unknown, int **position);
 bool implicit_is_short(Generation *g);
 void write_implicit_sizes(Generation *g, Text *out, int indent);
 void write_implicit_members(void *context, Text *out, int indent);
-void write_implicit_code(void *context, Text *out, int indent);
+void write_implicit_code(Generation *g, Text *out);
 void write_implicit(void *context, Text *out, int indent);
 
 /* tables.c: the tables that the descriptor points to. */

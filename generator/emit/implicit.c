@@ -212,10 +212,8 @@ const Insertions implicit_points = {(const char *const[]){"implicit.c.in", "impl
                                                           NULL},
                                     implicit_point, NULL};
 
-void write_implicit_code(void *context, Text *out, int indent)
+void write_implicit_code(Generation *g, Text *out)
 {
-    Generation *g = one_by_one(context);
-    (void)indent;
     if (g->style->implicit)
         template_expand(g->pool, out, g->templates, "implicit.c.in", g->model->name, NULL, &implicit_points, g);
 }

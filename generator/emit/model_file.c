@@ -411,7 +411,7 @@ static void write_dynamics(void *context, Text *out, int indent)
     Generation *g = context;
     block_emit(out, g->formulation->dynamics, g->style, &g->packed, indent);
     if (!states(g)) /* gcc 14 takes what is only passed on for read */
-        line(out, indent, "rate[0] = 0; /* nothing moves */");
+        line(out, indent, "rate[0] = %s; /* nothing moves */", g->style->lanes ? "lane_of(R(0.0))" : "0");
 }
 
 static void write_outputs(void *context, Text *out, int indent)
@@ -710,8 +710,7 @@ static const Insertion code_point[] = {{"banner", write_banner},
                                        {"contact function", write_contact_function},
                                        {"contacts", write_contacts},
                                        {"controllers", write_controllers},
-                                       {"tangent", write_tangent_code},
-                                       {"implicit code", write_implicit_code},
+                                       {"derivatives", write_derivative_code},
                                        {"implicit", write_implicit},
                                        {NULL, NULL}};
 

@@ -11,6 +11,7 @@
 #include "subset/subset.h"
 #include "vehicle/vehicle.h"
 #include "vehicle/wheel.h"
+#include <string.h>
 
 /* A template that is being expanded, with the constants that its blocks need. */
 typedef struct Expansion {
@@ -274,14 +275,17 @@ static void write_stillness(const Generation *g, Text *out, int indent, int s)
             text_print(out, " && GIC_FABS(dlinks.%s[%d]) <= R(0.0)", k ? "rate" : "x", j); /* not so of a NaN */
         text_print(out, ";\n");
     }
+    /* &array[0], not the array: of 8 alike subsets it has as many numbers as one subset bytes, which gcc takes for a
+     * slip
+     * (-Wmemset-elt-size) */
     line(out, indent, "if (idle) {");
-    const char *motion = body_motion_text(g, subset->body[0]);
-    line(out, indent + 4, "memset(along->motion + %s, 0, %d * sizeof(gic_real));", motion,
+    line(out, indent + 4, "memset(&along->motion[%s], 0, %d * sizeof(gic_real));", body_motion_text(g, subset->body[0]),
          layout->bodies * layout->motion_size);
-    line(out, indent + 4, "memset(along->inertia + %s, 0, %d * sizeof(gic_real));", subset_inertia_text(g, s),
+    line(out, indent + 4, "memset(&along->inertia[%s], 0, %d * sizeof(gic_real));", subset_inertia_text(g, s),
          layout->inertia_size);
-    line(out, indent + 4, "memset(along->start + %d, 0, %d * sizeof(gic_real));", g->plan->start_offset[s],
-         layout->start_size);
+    if (layout->start_size)
+        line(out, indent + 4, "memset(&along->start[%d], 0, %d * sizeof(gic_real));", g->plan->start_offset[s],
+             layout->start_size);
     line(out, indent, "} else");
 }
 
@@ -446,36 +450,6 @@ static void write_wheel_tangents(void *context, Text *out, int indent)
         expand(g, out, wheels_roll(g) ? "tangent_wheels.c.in" : "tangent_states.c.in");
 }
 
-static void write_table_slope(void *context, Text *out, int indent)
-{
-    Generation *g = context;
-    (void)indent;
-    if (g->model->tables)
-        expand(g, out, "tangent_table.c.in");
-}
-
-static void write_road_change(void *context, Text *out, int indent)
-{
-    Generation *g = context;
-    (void)indent;
-    if (g->model->wheels)
-        expand(g, out, "tangent_road.c.in");
-}
-
-static void write_friction_change(void *context, Text *out, int indent)
-{
-    Generation *g = context;
-    (void)indent;
-    if (wheels_roll(g))
-        expand(g, out, "tangent_friction.c.in");
-}
-
-static void write_slopes(void *context, Text *out, int indent)
-{
-    (void)indent;
-    expand(context, out, "tangent_slopes.c.in");
-}
-
 static void write_derived_along(void *context, Text *out, int indent)
 {
     Generation *g = context;
@@ -538,15 +512,11 @@ static const Insertion class_point[] = {{"tangent knowns", write_solve_knowns}, 
 const Insertions tangent_class_points = {
     (const char *const[]){"tangent_class.c.in", "tangent_react.c.in", "tangent_wheel.c.in", NULL}, class_point, NULL};
 
-static const Insertion tangent_point[] = {{"tangent slopes", write_slopes},
-                                          {"tangent motions", write_found_motions},
+static const Insertion tangent_point[] = {{"tangent motions", write_found_motions},
                                           {"tangent inertias", write_found_inertias},
                                           {"tangent start", write_found_start},
                                           {"flat", write_flat},
                                           {"tangent flat", write_flat_call},
-                                          {"table slope", write_table_slope},
-                                          {"road change", write_road_change},
-                                          {"friction change", write_friction_change},
                                           {"class tangents", write_class_tangents},
                                           {"wheel tangents", write_wheel_tangents},
                                           {"derived tangent", write_derived_along},
@@ -576,10 +546,9 @@ static const Insertion tangent_point[] = {{"tangent slopes", write_slopes},
                                           {NULL, NULL}};
 
 const Insertions tangent_points = {
-    (const char *const[]){"tangent.c.in", "tangent_slopes.c.in", "tangent_table.c.in", "tangent_road.c.in",
-                          "tangent_friction.c.in", "tangent_derive.c.in", "tangent_reactions.c.in", "tangent_free.c.in",
-                          "tangent_fixed.c.in", "tangent_wheels.c.in", "tangent_states.c.in", "tangent_drive.c.in",
-                          NULL},
+    (const char *const[]){"tangent.c.in", "tangent_table.c.in", "tangent_road.c.in", "tangent_friction.c.in",
+                          "tangent_derive.c.in", "tangent_reactions.c.in", "tangent_free.c.in", "tangent_fixed.c.in",
+                          "tangent_wheels.c.in", "tangent_states.c.in", "tangent_drive.c.in", NULL},
     tangent_point, NULL};
 
 bool has_tangents(Generation *g)
@@ -587,14 +556,30 @@ bool has_tangents(Generation *g)
     return g->style->derivatives || (g->style->implicit && !weighed_columns(g));
 }
 
-void write_tangent_code(void *context, Text *out, int indent)
+/* Slopes of tables, and how road and friction change with the place, as far as `code` calls these functions: what
+ * blocks read is not always differentiated (a wheel on a vertical guide keeps its point of the road). */
+static void write_called_slopes(Generation *g, Text *out, const Text *code)
+{
+    static const struct {
+        const char *function, *template;
+    } slope[] = {{"table_slope", "tangent_table.c.in"},
+                 {"road_change", "tangent_road.c.in"},
+                 {"friction_change", "tangent_friction.c.in"}};
+    for (size_t i = 0; i < sizeof slope / sizeof *slope; ++i)
+        if (code->size && strstr(code->s, pool_print(g->pool, "%s_%s(", g->model->name, slope[i].function)))
+            expand(g, out, slope[i].template);
+}
+
+void write_derivative_code(void *context, Text *out, int indent)
 {
     Generation *g = one_by_one(context);
+    Text code = {.pool = g->pool};
     (void)indent;
     if (has_tangents(g))
-        expand(g, out, "tangent.c.in");
-    else if (g->style->implicit)
-        write_slopes(g, out, indent);
+        expand(g, &code, "tangent.c.in");
+    write_implicit_code(g, &code);
+    write_called_slopes(g, out, &code);
+    text_add(out, code.s, code.size);
 }
 
 /* ---- header -------------------------------------------------------------------------------------------------- */
