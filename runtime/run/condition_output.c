@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Conditions of scenes as outputs. */
 #include "run/condition_output.h"
+#include "base/message.h"
 #include "expression/expression.h"
 #include "model/tunable.h"
 #include "scene/action.h"
@@ -13,6 +14,15 @@ static const char *const guard_name = "the guard of a condition";
 int condition_count(const Scene *scene)
 {
     return scene && scene->actions ? scene->actions->count : 0;
+}
+
+void condition_no_end(const Scene *scene, const char *option)
+{
+    for (int i = 0; i < condition_count(scene); ++i)
+        if (scene->actions->action[i].ends)
+            diag_fail(scene->actions->action[i].at,
+                      "leave `until` out, so that runs end with `duration`; `when` may stay",
+                      "%s looks at all times of a run, and '%s' ends it", option, scene->actions->action[i].text);
 }
 
 int condition_has(const Model *model)
@@ -163,8 +173,12 @@ Model *condition_outputs(Pool *pool, Model *from, const Scene *scene)
         output_copy(from, &model->signal[i].output, &from->signal[i].output);
     }
     model->output = pool_alloc(pool, (size_t)(from->outputs + 2 * count + 1) * sizeof *model->output);
+    int before = from->outputs;
+    while (before > 0 && from->output[before - 1].sampled)
+        --before;
     for (int i = 0; i < from->outputs; ++i)
-        output_copy(from, &model->output[i], &from->output[i]);
+        output_copy(from, &model->output[i < before ? i : i + 2 * count], &from->output[i]);
+    model->outputs = before;
     for (int i = 0; i < 2 * count; ++i) {
         const Action *action = &actions->action[i % count];
         const char *const called = i < count ? name : guard_name;
@@ -180,6 +194,7 @@ Model *condition_outputs(Pool *pool, Model *from, const Scene *scene)
                                                    .hidden = true};
         ++model->output_components;
     }
+    model->outputs = from->outputs + 2 * count;
     return model;
 }
 

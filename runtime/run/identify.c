@@ -10,6 +10,7 @@
 #include "host/gsl_errors.h"
 #include "host/host.h"
 #include "model/limits.h"
+#include "run/condition_output.h"
 #include "run/fit_page.h"
 #include "run/number_place.h"
 #include "run/tangent_run.h"
@@ -30,6 +31,7 @@ typedef struct Fit {
     Pool *pool;
     const Model *model;
     const Scene *scene; /* with the numbers that are tried */
+    Scene *running;     /* as a run has it, whose conditions change inputs */
     const CsvTable *table;
     TangentRun *run;
     const RunVariable *variable;
@@ -126,7 +128,7 @@ static void guess_noise(Fit *fit)
 /* Outputs less what was measured, and their derivatives, with the scene's present numbers. Returns a status. */
 static int run_through(Fit *fit)
 {
-    int status = tangent_begin(fit->run, fit->scene);
+    int status = tangent_begin(fit->run, scene_renewed(fit->scene, fit->running));
     int64_t step = 0;
     for (int r = 0; r < fit->table->rows && status == GIC_OK; ++r) {
         for (; step < fit->step[r] && status == GIC_OK; ++step)
@@ -266,7 +268,7 @@ static End fit_once(Fit *fit, gsl_vector *x, gsl_matrix *covariance, size_t *unt
     return !told ? UNTOLD : there ? FOUND : fit->status != GIC_OK ? NO_RUN : LOST;
 }
 
-static Fit open(Pool *pool, const Model *model, const Scene *scene, const Request *request)
+static Fit open(Pool *pool, const Model *from, const Scene *scene, const Request *request)
 {
     if (request->keys == 0)
         diag_fail_call(program_place(), "parameter/NAME, for one, after the scene",
@@ -274,7 +276,14 @@ static Fit open(Pool *pool, const Model *model, const Scene *scene, const Reques
     if (scene->equilibrium)
         diag_fail((Place){scene->source, 0, 0}, "give its places, which gicrun --equilibrium prints",
                   "a start in equilibrium follows parameters, and --identify holds the start");
-    Fit fit = {.pool = pool, .model = model, .scene = scene_with_numbers(pool, model, scene)};
+    condition_no_end(scene, "--identify");
+    Model *model = pool_alloc(pool, sizeof *model);
+    *model = *from;
+    model = condition_outputs(pool, model, scene);
+    Fit fit = {.pool = pool,
+               .model = model,
+               .scene = scene_with_numbers(pool, model, scene),
+               .running = scene_with_numbers(pool, model, scene)};
     fit.table = csv_read(pool, request->measured, "time [s],chassis.z [m]", NULL);
     fit.run = tangent_open(pool, model, fit.scene, request->solve, request->key, request->keys);
     fit.variables = tangent_variables(fit.run, &fit.variable);

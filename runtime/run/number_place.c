@@ -32,6 +32,16 @@ Scene *scene_with_numbers(Pool *pool, const Model *model, const Scene *scene)
     return copy;
 }
 
+const Scene *scene_renewed(const Scene *copy, Scene *running)
+{
+    Profile *profile = running->profile;
+    *running = *copy;
+    running->profile = profile;
+    if (copy->profiles)
+        memcpy(profile, copy->profile, (size_t)copy->profiles * sizeof *profile);
+    return running;
+}
+
 /* The value or rate of a coordinate, of which the scene has the numbers from now on. */
 static double *initial_number(const Model *model, const Scene *copy, const RunVariable *v)
 {

@@ -7,6 +7,7 @@
 #include "gic_runtime.h"
 #include "host/gsl_errors.h"
 #include "host/host.h"
+#include "run/condition_output.h"
 #include "run/fit_page.h"
 #include "run/formula_output.h"
 #include "run/number_place.h"
@@ -21,8 +22,9 @@ static const char *const option = "--optimize";
 
 /* ---- what is looked for ----------------------------------------------------------------------------------- */
 
-/* The formulas between semicolons as the only outputs of a model; sets search->formula and search->peak. */
-static const Model *read_formulas(Search *s, const Model *from, const char *text)
+/* The formulas between semicolons as the only outputs of a model, and the scene's conditions; sets search->formula and
+ * search->peak. */
+static const Model *read_formulas(Search *s, const Model *from, const Scene *scene, const char *text)
 {
     const char *inside = formula_inside(s->pool, text, "maximum"), **formula = NULL;
     s->peak = inside;
@@ -34,7 +36,8 @@ static const Model *read_formulas(Search *s, const Model *from, const char *text
     Model *model = NULL;
     for (int i = 0; i < s->formulas; ++i)
         from = model = formula_output(s->pool, from, option, pool_print(s->pool, "formula %d", i + 1), formula[i]);
-    formula_alone(s->pool, model, s->formulas);
+    model = condition_outputs(s->pool, model, scene);
+    formula_alone(s->pool, model, s->formulas + 2 * condition_count(scene));
     s->formula = formula;
     return model;
 }
@@ -104,9 +107,11 @@ static void find_ranges(Search *s, const Scene *scene, const Request *request)
 static Search open(Pool *pool, const Model *model, const Scene *scene, const Request *request)
 {
     Search s = {.pool = pool};
-    s.model = read_formulas(&s, model, request->formula);
+    condition_no_end(scene, option);
+    s.model = read_formulas(&s, model, scene, request->formula);
     scene = equilibrium_start(pool, model, scene, request->solve);
     s.scene = scene_with_numbers(pool, s.model, scene);
+    s.running = scene_with_numbers(pool, s.model, scene);
     find_ranges(&s, s.scene, request);
     number_places_check(s.model, s.scene, s.variable, s.variables, "optimization");
     s.times = (int)scene->outputs + 1;

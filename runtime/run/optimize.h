@@ -17,7 +17,7 @@ typedef struct Search {
     const Model *model;         /* whose only outputs are the formulas */
     const char *text;           /* all formulas */
     const char *const *formula; /* [formulas] */
-    Scene *scene;               /* with the numbers that are tried */
+    Scene *scene, *running;     /* with the numbers that are tried; as a run has it, whose conditions change inputs */
     TangentRun *run;
     const RunVariable *variable;
     bool peak; /* the largest magnitude is to be least, else the mean of squares */

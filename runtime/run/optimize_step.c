@@ -34,7 +34,7 @@ int optimize_run(Search *s, const double *x, double *rest, double *jacobian)
     BrokenLimit broken;
     if (limit_broken(s->model, s->scene->parameter, &broken))
         return s->status = GIC_ERROR_GEOMETRY;
-    int status = tangent_begin(s->run, s->scene);
+    int status = tangent_begin(s->run, scene_renewed(s->scene, s->running));
     for (int t = 0; t < s->times && status == GIC_OK; ++t) {
         for (int64_t i = 0; t > 0 && i < s->scene->per_output && status == GIC_OK; ++i)
             status = tangent_step(s->run);

@@ -50,6 +50,8 @@ sed 's/^inputs.*//' "$start" >"$work/free.scene"
 mistake 2 "does not find 'input/push'" "$work/m.csv" "$spring" "$work/free.scene" 'input/push'
 mistake 2 'no scene given' "$work/m.csv" "$spring"
 mistake 2 'does not go with --engine' "$work/m.csv" --engine cc "$spring" "$start" parameter/k
+{ cat "$start" && echo 'until: cart.x > 9'; } >"$work/ends.scene"
+mistake 1 "error: --identify looks at all times of a run, and 'cart.x > 9' ends it" "$work/m.csv" "$spring" "$work/ends.scene" parameter/k
 mistake 1 'No such file' "$work/none.csv" "$spring" "$start" parameter/k
 sed '1s/cart.x/cart.w/' "$work/m.csv" >"$work/bad.csv"
 mistake 1 "bad.csv:1:10: error: the model has no output 'cart.w'" "$work/bad.csv" "$spring" "$start" parameter/k

@@ -59,6 +59,11 @@ mistake 2 "$z begins with 0.1345 m, which is not between its bounds" wheel.yaw "
 mistake 2 "'$z' is there twice" wheel.yaw "$corner" "$travel" $z=0:1 $z=0:2
 mistake 2 "'parameter/link_in_y' has no bounds" wheel.yaw "$corner" "$travel" parameter=0:1
 mistake 1 "wheel.w" wheel.w "$corner" "$travel" $z=0:1
+{ cat "$travel" && echo 'until: hub.z > 0.2'; } >"$work/ends.scene"
+mistake 1 "ends.scene:11:8: error: --optimize looks at all times of a run, and 'hub.z > 0.2' ends it" wheel.yaw "$corner" "$work/ends.scene" $z=0:1
+{ cat "$travel" && echo 'sleep: {}'; } >"$work/sleeps.scene"
+mistake 1 'no gradient of a run in which the vehicle may sleep' wheel.yaw "$corner" "$work/sleeps.scene" $z=0:1
+check 'what to do about sleep' says 'remedy: leave `sleep` out'
 mistake 2 'no scene given' wheel.yaw "$corner"
 mistake 2 'does not go with --engine' wheel.yaw --engine cc "$corner" "$travel" $z=0:1
 mistake 2 'one of --eval' wheel.yaw --modes "$corner" "$travel" $z=0:1

@@ -111,6 +111,43 @@ near("stiffness", found["parameter/k"], other.x[0], 1e-3 * other.x[0])
 near("damping", found["parameter/c"], other.x[1], 1e-3 * other.x[1])
 near("what is left", end, math.sqrt(2 * other.cost / len(times)), 1e-6)
 
+# ---- the same where a condition, whose time follows the numbers, starts a push of another size; `--identify` finds planted ones
+
+
+def pushed_later(k, c):
+    path = ringing(k, c)
+    with open(path, "a") as f:
+        f.write('inputs: {push: 0.5}\nwhen: [{if: "cart.x < 0.2", inputs: {push: {step: {to: 30, rise: 0.4}}}}]\n')
+    return path
+
+
+start, end, found = optimize(wish, spring, pushed_later(36.0, 2.0), "parameter/k=1:100", "parameter/c=0:40")
+other = least_squares(lambda p: columns(spring, pushed_later(*map(float, p)), "cart.x")[:, 0] - np.exp(-times), [36, 2],
+                      jac="3-point", bounds=([1, 0], [100, 40]), xtol=1e-12, ftol=1e-12, gtol=1e-12)
+near("when: stiffness", found["parameter/k"], other.x[0], 1e-3 * other.x[0])
+near("when: damping", found["parameter/c"], other.x[1], 1e-3 * other.x[1])
+near("when: what is left", end, math.sqrt(2 * other.cost / len(times)), 1e-6)
+near("when: the start", start, math.sqrt(np.mean((columns(spring, pushed_later(36.0, 2.0), "cart.x")[:, 0] - np.exp(-times))**2)),
+     1e-9)
+with open(f"{work}/later.csv", "w") as f:
+    f.write("time [s],cart.x [m]\n")
+    for t, x in columns(spring, pushed_later(45.0, 5.0), "time", "cart.x"):
+        f.write(f"{float(t)!r},{float(x)!r}\n")
+for row in csv.DictReader(gic("--identify", f"{work}/later.csv", spring, pushed_later(36.0, 2.0), "parameter/k", "parameter/c",
+                              "-o", "-").splitlines()):
+    near(f"when: {row['variable']} found again", float(row["value"]), {"k": 45, "c": 5}[row["variable"][-1]], 1e-7)
+# beside a controller, whose outputs come after those of the conditions
+sampled = f"{work}/sampled.veh"
+Path(sampled).write_text(Path(spring).read_text().replace("- c * rate(x)", "- damper.drag") + "controllers:\n"
+                         "  damper: {period: 0.02, rules: {drag: {value: c * rate(x), unit: N}}}\n")
+with open(f"{work}/later.csv", "w") as f:
+    f.write("time [s],cart.x [m]\n")
+    for t, x in columns(sampled, pushed_later(45.0, 5.0), "time", "cart.x"):
+        f.write(f"{float(t)!r},{float(x)!r}\n")
+for row in csv.DictReader(gic("--identify", f"{work}/later.csv", sampled, pushed_later(36.0, 2.0), "parameter/k", "parameter/c",
+                              "-o", "-").splitlines()):
+    near(f"when, sampled: {row['variable']} found again", float(row["value"]), {"k": 45, "c": 5}[row["variable"][-1]], 1e-7)
+
 # ---- the corner of a Formula Student car --------------------------------------------------------------------------------------------
 
 corner, travel = f"{models}/optimize/corner.veh", f"{models}/optimize/corner.scene"
