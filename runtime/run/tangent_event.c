@@ -278,10 +278,19 @@ static Actions *actions_of(const TangentRun *run)
     return run->scene->actions;
 }
 
+/* Condition c is why the run has no derivative: `before`, its formula, `after`. Returns a status. */
+static int blame(TangentRun *run, int c, const char *before, const char *after)
+{
+    const Action *action = &actions_of(run)->action[c];
+    run->happened.blamed = action;
+    run->happened.failed = pool_print(run->pool, "%scondition '%s'%s", before, action->text, after);
+    return GIC_ERROR_RESULT;
+}
+
 /* ---- when a condition becomes true ---------------------------------------------------------------------------- */
 
-/* The value of condition c at a time of the step, where the run is then. */
-static int value_there(TangentRun *run, const Saved *start, double time, int c, double *value)
+/* The guard of condition c, or its value, at a time of the step, where the run is then. */
+static int value_there(TangentRun *run, const Saved *start, double time, int c, bool guard, double *value)
 {
     TrailStep next;
     int later;
@@ -289,7 +298,7 @@ static int value_there(TangentRun *run, const Saved *start, double time, int c, 
     run->plain = true;
     int status = walk(run, time, -1, -1, &next, &later);
     if (status == GIC_OK)
-        status = tangent_guard(run, c, value);
+        status = guard ? tangent_guard(run, c, value) : truth(run, c, value);
     run->plain = false;
     return status;
 }
@@ -334,41 +343,65 @@ static bool is_instant(const TangentRun *run, double time)
     return is;
 }
 
+/* Bisection, with the secant where that is quicker, from `low`, where a number of condition c is at_low, not above 0,
+ * to `high`, where it is at_high, above 0; both come as close as rounding lets them. */
+typedef struct Bracket {
+    double low, high, at_low, at_high;
+} Bracket;
+
+static int close_in(TangentRun *run, const Saved *start, int c, bool guard, double close, Bracket *b)
+{
+    double weight_low = fmin(b->at_low, 0), weight_high = b->at_high;
+    int status = GIC_OK;
+    for (int i = 0; i < 200 && status == GIC_OK && b->high - b->low > 2 * close; ++i) {
+        const double share = weight_low / (weight_low - weight_high);
+        double value, middle = b->low + (i % 3 < 2 && share >= 0 && share <= 1 ? share : 0.5) * (b->high - b->low);
+        middle = fmin(fmax(middle, b->low + close), b->high - close);
+        status = value_there(run, start, middle, c, guard, &value);
+        *(value > 0 ? &b->high : &b->low) = middle;
+        *(value > 0 ? &b->at_high : &b->at_low) = value;
+        /* Illinois: the end that stays counts half */
+        weight_low = value > 0 ? weight_low / 2 : value;
+        weight_high = value > 0 ? value : weight_high / 2;
+    }
+    return status;
+}
+
+/* True if condition c gets to 0 from below and stays there, at a time that follows from variables: before, it does. */
+static bool grazes(TangentRun *run, const Saved *start, int c, const Bracket *b, int *status)
+{
+    double value;
+    *status = value_there(run, start, b->low, c, true, &value);
+    return condition_moves(run, c, status);
+}
+
 /* Of a condition whose guard is `there` at the end of the step, `end`, where the condition is true. */
 static int locate(TangentRun *run, const Saved *start, double end, int c, double there, Found *found)
 {
     const double first = gic_time(start->both), width = end - first;
     const double close = fmax(1e-14 * width, 4 * DBL_EPSILON * fabs(end));
-    double low = first, high = end, at_low = 0, at_high = there, value, rate[run->states + 1];
-    double slope = 0, weight_low = 0, weight_high = 0;
+    const bool guard = there > 0; /* else it stays at 0, and the condition's value tells where it gets there */
+    double value, before, slope = 0, rate[run->states + 1];
     TrailStep next;
     tangent_restore(run, start, &next);
-    int status = tangent_guard(run, c, &at_low);
+    int status = tangent_guard(run, c, &before);
+    Bracket b = {.low = first, .high = end, .at_low = before, .at_high = there};
     if (status == GIC_OK)
-        status = value_there(run, start, end, c, &value);
+        status = value_there(run, start, end, c, guard, &value);
     if (status == GIC_OK && value <= 0) { /* the whole step says so, but not its parts of RK4 */
-        low = end;
-        at_low = value;
+        b.low = end;
+        b.at_low = value;
     } else {
-        at_high = value;
+        b.at_high = value;
     }
-    weight_low = fmin(at_low, 0);
-    weight_high = at_high;
-    for (int i = 0; i < 200 && status == GIC_OK && high - low > 2 * close; ++i) {
-        const double share = weight_low / (weight_low - weight_high);
-        double middle = low + (i % 3 < 2 && share >= 0 && share <= 1 ? share : 0.5) * (high - low);
-        middle = fmin(fmax(middle, low + close), high - close);
-        status = value_there(run, start, middle, c, &value);
-        *(value > 0 ? &high : &low) = middle;
-        *(value > 0 ? &at_high : &at_low) = value;
-        /* Illinois: the end that stays counts half */
-        weight_low = value > 0 ? weight_low / 2 : value;
-        weight_high = value > 0 ? value : weight_high / 2;
-    }
-    const double least = fmax(1e-12 * width, 8 * run->scene->ratio * DBL_EPSILON * fabs(end)); /* of a piece */
-    found->time = fmax(high, first + least);
     if (status == GIC_OK)
-        status = value_there(run, start, found->time, c, &value);
+        status = close_in(run, start, c, guard, close, &b);
+    const double least = fmax(1e-12 * width, 8 * run->scene->ratio * DBL_EPSILON * fabs(end)); /* of a piece */
+    found->time = fmax(b.high, first + least);
+    if (status == GIC_OK && !guard)
+        status = value_there(run, start, b.low, c, true, &b.at_low);
+    if (status == GIC_OK)
+        status = value_there(run, start, found->time, c, true, &value);
     run->plain = true;
     if (status == GIC_OK)
         status = run->descriptor.rhs(run->both, found->time, tangent_array(run, run->descriptor.state_offset),
@@ -376,23 +409,21 @@ static int locate(TangentRun *run, const Saved *start, double end, int c, double
     run->plain = false;
     if (status != GIC_OK)
         return status;
+    b.at_high = guard ? b.at_high : value;
     tangent_take(run, run->happened.longer, 0, rate);
     status = tangent_guard(run, c, &value);
     if (status == GIC_OK)
         status = tangent_guard_slope(run, c, rate, 1, -1, &slope);
-    const double jump = at_high - fmin(at_low, 0), most = 1e-3 * width;
+    const double jump = b.at_high - fmin(b.at_low, 0), most = 1e-3 * width;
+    const double size = fmax(fmax(fabs(there), fabs(before)), 1e-9);
     found->moves = slope > 0 && jump <= slope * most && condition_moves(run, c, &status);
     if (found->moves && !actions_of(run)->action[c].ends) /* what comes after has to have a piece of the step */
         found->time = fmin(found->time, end - least);
-    if (status == GIC_OK && !found->moves && jump > slope * most && jump > 0 && !is_instant(run, high) &&
-        condition_jumps(run->model, c)) {
-        run->happened.failed = "a condition whose `if` jumps, and not between comparisons,";
-        return GIC_ERROR_RESULT;
-    }
-    if (status == GIC_OK && slope <= 0 && jump <= 1e-9 * fmax(fabs(there), 1e-9) && high < end) {
-        run->happened.failed = "a condition that becomes true without crossing 0";
-        return GIC_ERROR_RESULT;
-    }
+    if (status == GIC_OK && !found->moves && jump > slope * most && jump > 0 && !is_instant(run, b.high) &&
+        condition_jumps(run->model, c))
+        return blame(run, c, "", ", whose `if` jumps, and not between comparisons,");
+    if (status == GIC_OK && slope <= 0 && jump <= 1e-9 * size && b.high < end && grazes(run, start, c, &b, &status))
+        return blame(run, c, "", ", which becomes true without crossing 0,");
     return status;
 }
 
@@ -427,6 +458,7 @@ int tangent_events_begin(TangentRun *run)
     happened->end = -1;
     happened->clocks = happened->happenings = 0;
     happened->failed = NULL;
+    happened->blamed = NULL;
     for (int i = 0; i < run->scene->profiles; ++i)
         happened->begun[i].has = false;
     for (int i = 0; happened->conditions && i < actions->count; ++i)
@@ -503,10 +535,8 @@ static int happen(TangentRun *run, int which, int clock)
     memcpy(present, input, (size_t)run->inputs * sizeof *input);
     for (int i = 0; i < action->changes; ++i) {
         const int at = action->change[i].profile;
-        if (at < 0) {
-            happened->failed = "a `target` of the driver that begins as a condition becomes true";
-            return GIC_ERROR_RESULT;
-        }
+        if (at < 0)
+            return blame(run, which, "a `target` of the driver that begins with ", "");
         const Profile *profile = &run->scene->profile[at];
         Begun *begun = &happened->begun[at], old = *begun;
         *POOL_PUSH(run->pool, happened->happening, happened->happenings) =
@@ -535,10 +565,8 @@ static int happen_all(TangentRun *run, int which, int clock, TrailStep *next)
     next->happens = run->happened.happenings;
     if (run->code->controller_count > 0)
         status = tangent_sample(run, &event, &at);
-    if (event >= 0 && clock >= 0) {
-        run->happened.failed = "a condition that becomes true as a controller samples";
-        return GIC_ERROR_RESULT;
-    }
+    if (event >= 0 && clock >= 0)
+        return blame(run, which, "", ", which becomes true as a controller samples,");
     if (event >= 0)
         next->sample = event;
     while (status == GIC_OK && which >= 0) {

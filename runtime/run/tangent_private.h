@@ -54,6 +54,7 @@ typedef struct Happened {
     Happening *happening;
     int happenings;
     const char *failed;          /* what of it has no derivative; NULL: all has */
+    const struct Action *blamed; /* the condition that is part of it; NULL: none */
     struct Saved *start, *inner; /* work: where a step and a piece begin */
     struct Watch *watch;         /* of contacts; NULL: none are located */
     double *fixed, *longer;      /* work: [all of the state] */

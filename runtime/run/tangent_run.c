@@ -16,6 +16,7 @@
 #include "run/formula_blame.h"
 #include "run/knot.h"
 #include "run/start_change.h"
+#include "scene/action.h"
 #include "scene/profile.h"
 #include "tape/engine_tape.h"
 
@@ -509,8 +510,9 @@ static void check_names(const TangentRun *run, const char *const *wanted, int co
 void tangent_fail(const TangentRun *run, int status)
 {
     if (run->happened.failed)
-        diag_fail((Place){run->scene->source, 0, 0}, "another threshold or `step`, or take it out of the scene",
-                  "%s at t = %.6g s has no derivative", run->happened.failed, tangent_time(run));
+        diag_fail(run->happened.blamed ? run->happened.blamed->at : (Place){run->scene->source, 0, 0},
+                  "another threshold or `step`, or take it out of the scene", "%s at t = %.6g s has no derivative",
+                  run->happened.failed, tangent_time(run));
     if (run->shifted)
         diag_fail((Place){run->scene->source, 0, 0}, "other speeds of `up` and `down`, or another `step`",
                   "two changes of gear in the step to t = %.6g s, or one right at its end, have no derivatives",

@@ -17,15 +17,24 @@ ball=$work/ball.veh # which gradient_events.py left
 printf 'time [s],ball.x [m]\n1,0.4\n2,0.1\n' >"$work/m.csv"
 printf 'gicscene: 1\nduration: 2\nstep: 0.01\nuntil: "x > 1"\n' >"$work/bad.scene"
 run --identify "$work/m.csv" "$ball" "$work/bad.scene" initial/x
-check 'conditions are no part of what is identified' ends 'a run in which conditions change the run'
+check 'an end is no part of what is identified' ends "bad.scene:4:8: error: --identify looks at all times of a run, and 'x > 1' ends it"
 sed 's/^duration: .*/duration: 0.5\nwhen: [{if: "time > 0.2", target: 5}]/; s/^equilibrium.*//' "$models/scenes/lane_change.scene" >"$work/target.scene"
 run --gradient chassis.x "$models/hmmwv_vehicle.veh" "$work/target.scene" initial/x.rate -o "$work/no.csv"
-check 'a target that begins' ends 'a `target` of the driver that begins as a condition becomes true at t = 0.2'
+check 'a target that begins' ends "a \`target\` of the driver that begins with condition 'time > 0.2' at t = 0.2"
 for until in 'flag > 0' '2 * if(x.value > hi, 1, -1)' 'x.value > if(x.rate > 1.5, 0, 9)'; do
     printf 'gicscene: 1\nduration: 3\nstep: 0.01\nparameters: {hi: 1.496}\ninitial: {rates: {x: 1}}\nuntil: "%s"\n' "$until" >"$work/jump.scene"
     run --gradient time "$work/cart.veh" "$work/jump.scene" -o "$work/no.csv"
-    check "a condition that jumps: $until" ends 'a condition whose `if` jumps, and not between comparisons, at t = '
+    check "a condition that jumps: $until" ends "jump.scene:6:8: error: condition '.*', whose \`if\` jumps, and not between comparisons, at t = "
 done
+# a side that stays where both are equal: 0 is reached and not crossed, within a step and at the end of one (0.5 s, 0.05 m)
+for until in 'min(x.value, 0.0503) >= 0.0503' 'min(x.value, 0.05) >= 0.05' 'not (min(x.value, 0.503) < 0.503)' 'min(0, x.value - 0.503) + 1e-25 > 0'; do
+    printf 'gicscene: 1\nduration: 3\nstep: 0.01\ninitial: {rates: {x: 1}}\nuntil: "%s"\n' "$until" >"$work/graze.scene"
+    run --gradient time "$work/cart.veh" "$work/graze.scene" -o "$work/no.csv"
+    check "a condition that grazes: $until" ends "graze.scene:5:8: error: condition '$until', which becomes true without crossing 0, at t = "
+done
+printf 'gicscene: 1\nduration: 3\nstep: 0.01\ninitial: {rates: {x: 1}}\nuntil: "min(time, 1.005) >= 1.005"\n' >"$work/graze.scene"
+run --gradient time "$work/cart.veh" "$work/graze.scene"
+check 'whose time is known: it stays' prints '^cart: time = 1.005 at the end'
 # what the model's file would refuse is refused of numbers that are looked for, too: a pendulum that swings up needs negative damping
 cat >"$work/pend.veh" <<'END'
 gicgen: 1
