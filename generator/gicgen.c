@@ -376,9 +376,6 @@ int main(int count, char **word)
     if (options.scene) {
         const Scene *scene = scene_read(pool, options.scene, model, NULL, 0);
         check_outputs(pool, &options, scene->source);
-        if (scene->fixed)
-            diag_fail((Place){scene->source, 0, 0}, "give geometric parameters numbers in the model",
-                      "code for a rig has no geometric parameters, and '%s' has some", model->name);
         if (options.task == TASK_FMU)
             scene_no_auto(scene, "an FMU");
         else

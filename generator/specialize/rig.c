@@ -76,6 +76,7 @@ const Model *model_hold(Pool *pool, const Model *model, const double position[3]
         memcpy(held->body, model->body, size);
     else if (model->tuning)
         move_formulas(model, held, position, euler);
+    held->drawn = held->body; /* set-up with other parameters begins there */
     return held;
 }
 
