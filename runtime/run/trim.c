@@ -18,6 +18,7 @@
 #include "tape/engine_tape.h"
 #include "vehicle/vehicle.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -56,6 +57,7 @@ typedef struct Work {
     gsl_vector *S;
     int status, worst; /* of the last failure; row of the largest rate that was left */
     double left;
+    bool exact; /* rounding leaves it: no unknown would move any more */
 } Work;
 
 /* ---- unknowns and equations ----------------------------------------------------------------------------- */
@@ -277,9 +279,18 @@ static bool advance(Work *w, double size)
     return false;
 }
 
+/* What rounding of places, velocities and speeds, of sizes about 1, may leave of the worst rate, and more. */
+static double rounding_of(const Work *w)
+{
+    double sum = 0;
+    for (int j = 0; j < w->linear->count; ++j)
+        sum += fabs(w->A[w->worst * w->linear->count + j]);
+    return 1000 * DBL_EPSILON * sum;
+}
+
 static bool iterate(Work *w)
 {
-    const double small = 1e-12; /* of units: what rounding leaves */
+    const double small = 1e-12, exact = 1e-9; /* of units: what rounding leaves, at best and of a stiff model */
     for (int k = 0; k < MOST_STEPS; ++k) {
         const int status = decompose(w);
         if (status != GIC_OK) {
@@ -288,6 +299,7 @@ static bool iterate(Work *w)
         }
         w->left = residual(w, w->f);
         const double size = solve(w, w->f, w->step);
+        w->exact = size <= exact && w->left <= rounding_of(w);
         ++w->trim->steps;
         if (!(size > small) || !advance(w, size))
             return w->left < equilibrium_limit;
@@ -300,6 +312,7 @@ static bool newton(Work *w)
 {
     const size_t unknowns = (size_t)w->unknowns;
     w->status = GIC_OK;
+    w->exact = false;
     w->U = gsl_matrix_alloc((size_t)w->equations, unknowns);
     w->V = gsl_matrix_alloc(unknowns, unknowns);
     w->S = gsl_vector_alloc(unknowns);
@@ -333,7 +346,7 @@ static bool settle(Work *w)
     Instance *start = (Instance *)(void *)instance_new(w->pool, w->trim->found->engine);
     memcpy(start, w->self, w->linear->engine->code.size);
     const bool found = newton(w);
-    if (!both || (found && *input_of(w, w->pedal) >= 0))
+    if (!both || ((found || w->exact) && *input_of(w, w->pedal) >= 0)) /* rounding is no reason for the other one */
         return found;
     memcpy(w->self, start, w->linear->engine->code.size);
     const bool braked = w->pedal == goal->brake;
@@ -465,8 +478,20 @@ static const char *reason(const Work *w)
     if (w->status != GIC_OK)
         return instance_status(w->pool, &w->linear->engine->code, &w->trial->head, w->status);
     const bool is_rate = w->worst < 2 * w->linear->places;
-    return pool_print(w->pool, "a rate of %.3g is left, of %s%s", w->left, w->linear->name[w->worst],
-                      is_rate ? ".rate" : "");
+    const char *rate = pool_print(w->pool, "%s%s", w->linear->name[w->worst], is_rate ? ".rate" : "");
+    if (w->exact)
+        return pool_print(w->pool,
+                          "the motion is found to nine digits, but rounding leaves a rate of %.3g of %s, above 1e-9",
+                          w->left, rate);
+    return pool_print(w->pool, "a rate of %.3g is left, of %s", w->left, rate);
+}
+
+/* What to do about it; else: where more than rounding is left. */
+static const char *remedy(const Work *w, const char *otherwise)
+{
+    return w->status == GIC_OK && w->exact
+               ? "light bodies on stiff springs multiply rounding: more mass or less stiffness there"
+               : otherwise;
 }
 
 /* why: in the first gear that was tried. */
@@ -480,8 +505,8 @@ static _Noreturn void fail_straight(const Work *w, const Scene *scene, const cha
     diag_fail(place_of(w, scene),
               fabs(w->model->body[BODY_BASE].euler[0]) < 1 - 1e-12
                   ? "it drives along x of the base's own frame, which `orientation` turns from that of the drawing"
-              : powertrain ? "take another speed or gear; --manoeuvre acceleration tells what it can do"
-                           : "take another speed; an input that drives is `accelerator`, or drive=NAME",
+                  : remedy(w, powertrain ? "take another speed or gear; --manoeuvre acceleration tells what it can do"
+                                         : "take another speed; an input that drives is `accelerator`, or drive=NAME"),
               "no steady driving at %.6g m/s straight ahead%s: %s", w->trim->goal.speed, gear, why);
 }
 
@@ -534,7 +559,7 @@ static void go_round(Work *w, const Scene *scene)
         if (step < shortest)
             diag_fail(place_of(w, scene),
                       w->trim->goal.steer < 0 ? "give it a driven coordinate that steers, or name the input: steer=NAME"
-                                              : "take less speed or curvature: tires and drive have no more",
+                                              : remedy(w, "take less speed or curvature: tires and drive have no more"),
                       "no steady cornering at %.6g m/s beyond a lateral acceleration of %.4g m/s^2 found: %s", speed,
                       fabs(done), reason(w));
     }

@@ -69,6 +69,22 @@ mistake 1 'no steady cornering at 10 m/s beyond a lateral acceleration of 6' --t
 mistake 1 "it takes 'rack' at .*, beyond its range" --trim "$car" speed=5 curvature=0.2 -o "$work/no.scene"
 mistake 1 'no steady driving at 40 m/s straight ahead in a forward gear' --trim "$car" speed=40 -o "$work/no.csv"
 mistake 1 'no steady driving at 2 m/s straight ahead in gear 0' --trim "$car" speed=2 gear=0 -o "$work/no.csv"
+# 0.03 kg on 1e7 N/m: the last digit of 0.5 m is 1e-9 N, 4e-8 m/s^2
+cat >"$work/stiff.veh" <<END
+gicgen: 1
+include: $car
+model: stiff
+bodies:
+  ballast: {mass: 0.03, com: [0, 0, 0.5], inertia: [0.01, 0.01, 0.01]}
+joints:
+  rail: {type: prismatic, bodies: [chassis, ballast], axis: [0, 1, 0]}
+coordinates:
+  aside: {type: length, bodies: [chassis, ballast], points: [[0.3, -0.37, 0.51], [0.3, 0.13, 0.51]], range: [0.2, 1.7]}
+forces:
+  stiff: {type: spring_damper, coordinate: aside, stiffness: 1e7, damping: 10, free: 0.5}
+END
+mistake 1 'found to nine digits, but rounding leaves a rate of .* of aside.rate, above 1e-9' --trim "$work/stiff.veh" speed=10 lateral=2.5 -o "$work/no.csv"
+check 'what to do about rounding' says 'remedy: .*more mass or less stiffness there'
 mistake 1 'give it a driven coordinate that steers' --trim "$models/tutorial/5_tires.veh" speed=10 lateral=1 -o "$work/no.csv"
 mistake 1 "the base of model 'pendulum' is fixed" --trim "$models/pendulum.veh" speed=1
 mistake 1 "controller 'traction_l' changes by itself" --trim "$models/formula_student.veh" speed=10
