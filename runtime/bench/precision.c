@@ -167,7 +167,7 @@ static void add_all(Study *study)
     const int32_t keep = study->scene->keep;
     for (int32_t method = GIC_ROS2; method <= GIC_EXP3; ++method) {
         add_parts(study, integrator_name(method), "", IMPLICIT, method, (Ride){.ratio = 1});
-        if (keep > 1)
+        if (keep > 1 && method != GIC_EXP3) /* it makes all steps with the first one */
             add_parts(study, integrator_name(method), pool_print(study->bench->pool, ", a Jacobian for %d steps", keep),
                       IMPLICIT, method, (Ride){.ratio = 1, .keep = keep});
     }

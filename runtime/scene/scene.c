@@ -232,7 +232,7 @@ static void read_spread(Reader *reader, const Item *item, bool replaced)
     Scene *scene = reader->scene;
     const bool shares = scene_implicit(scene) && scene->method != GIC_EXP3;
     scene->spread = doc_bool(item, "spread_jacobian") && shares;
-    if (!shares && !replaced)
+    if (!shares && !replaced && (!scene_implicit(scene) || doc_bool(item, "spread_jacobian")))
         diag_fail(item->at, "remove it, or write `integrator: ros2`, `ros3` or `imex`",
                   "spread_jacobian is for implicit steps by these");
     if (scene->spread && scene->keep < 2)

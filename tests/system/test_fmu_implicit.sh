@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# test_fmu_implicit.sh GICGEN GICRUN: Functional Mock-up Units with implicit steps (ros2, ros3, imex), by the importer of
+# test_fmu_implicit.sh GICGEN GICRUN: Functional Mock-up Units with implicit steps (ros2, ros3, imex) and exponential ones (exp3), by the importer of
 # tests/fmi: co-simulation is gicrun's bit for bit, with kept Jacobians and controllers, and after going back.
 gicgen=$1
 gicrun=$2
@@ -53,6 +53,12 @@ check "no Jacobian for 0 steps" says_of "from 1 to 1000, not 0" solver.keep_jaco
 for step in 0 -0.01 9e-10; do
     check "no step of $step" says_of "solver.step must be 1e-9 s or more, not $step" solver.step=$step
 done
+for version in 2 3; do
+    as exp3 60 0.004 >"$work/exponential.scene"
+    implicit "$root/models/quarter_car.veh" "$work/exponential.scene" 0.02 1
+    check "FMI $version.0: no method 7" says_of "5 (IMEX) or 6 (EXP3), not 7" solver.method=7
+done
+rm -rf "$work/unit" && cp -r "$work/third" "$work/unit"
 drive cvode 1e-9 0.02 1 >"$work/unit.csv" 2>"$work/err" &&
     "$gicrun" -q --general --engine tcc --integrator adams --tolerance 1e-11 "$root/models/quarter_car.veh" "$work/quarter.scene" -o "$work/variable.csv" 2>>"$work/err" &&
     as_run 1e-7 "$work/variable.csv" "m rad 1 m/s rad/s"

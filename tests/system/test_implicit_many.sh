@@ -35,6 +35,7 @@ while read -r integrator shares; do
 done <<'END'
 ros3 false
 imex true
+exp3 false
 imex false
 END
 ! cmp -s imex.true.csv imex.false.csv
@@ -141,6 +142,23 @@ for name in "shared.scene", "whole.scene":
         many.step(0.004, 100, "imex")
         assert all((many.states[v] == car.states.array).all() for v in range(5)), (name, lanes)
 assert (last["shared.scene"] != last["whole.scene"]).any()
+# exponential steps: those of a run, vehicle by vehicle
+model = gicgen.Model(sys.argv[1], integrator="exp3")
+car = model.instance("whole.scene")
+car.step(0.004, 100, "exp3")
+run = model.run("whole.scene")
+for output in "carriage.z", "wheel.z":
+    assert run[output][-1] == car.outputs[output], output
+many = model.batch(3, "whole.scene")
+many.step(0.004, 100, "exp3")
+assert all((many.states[v] == car.states.array).all() for v in range(3))
+for wrong in lambda: model.batch(4, lanes=4), lambda: gicgen.Model(sys.argv[1], integrator="imex").instance().step(0.004, 1, "exp3"):
+    try:
+        wrong()
+    except gicgen.Error as error:
+        assert "no exponential steps" in str(error), error
+    else:
+        raise AssertionError("exponential steps without their code")
 plain = gicgen.Model(sys.argv[1])
 plain.instance("shared.scene").step(0.004, 1, "ab3")  # code without implicit steps needs no shares
 for lanes in 1, 4:
