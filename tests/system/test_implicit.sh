@@ -255,7 +255,7 @@ order 'tires and powertrain, imex' "$models/hmmwv_vehicle.veh" complete.csv 32 1
 for keep in 2 7 1000; do # the last one: all
     scene 0.4 @ 'integrator: exp3' "keep_jacobian: $keep" >exp3.scene
     cat waves >>exp3.scene
-    order "a vehicle, exp3, kept $keep steps" "$models/hmmwv.veh" car.csv 64 2.85 3.3 exp3.scene
+    order "a vehicle, exp3, kept $keep steps" "$models/hmmwv.veh" car.csv 12 2.85 3.3 exp3.scene
 done
 # with tires its error is that of a bend of the engine's table, as rk4's is: a tenth of that of ros3
 for method in ros3 exp3; do
