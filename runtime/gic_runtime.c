@@ -665,7 +665,7 @@ static int32_t panel_row(int32_t n, int32_t i)
 #else
 #define GIC_VECTOR 16
 #endif
-#if defined __GNUC__ && !defined __TINYC__
+#if defined __GNUC__ && !defined __TINYC__ && !defined __cplusplus
 typedef gic_real gic_rows __attribute__((vector_size(GIC_VECTOR), aligned(sizeof(gic_real)), may_alias));
 #else
 typedef gic_real gic_rows;
@@ -781,7 +781,7 @@ static gic_real exponential_balance(const Exponential *e, gic_real *a, gic_real 
             unit[i] *= by;
             for (int32_t j = 0; j < n; ++j) {
                 a[GIC_PANEL * i + panel_row(n, j)] *= by;
-                a[GIC_PANEL * j + panel_row(n, i)] /= by;
+                a[GIC_PANEL * j + panel_row(n, i)] *= GIC_R(1.0) / by; /* a power of 2 */
             }
         }
     }
@@ -811,7 +811,7 @@ static int exponential_functions(const Exponential *e, const gic_real *a, gic_re
         return 0;
     gic_real term = share[top];
     for (int32_t i = 1; i <= SERIES; ++i)
-        term /= (gic_real)(top + i);
+        term *= GIC_R(1.0) / (gic_real)(top + i);
     for (int32_t i = 0; i < e->size; ++i) {
         z[i] = reach * a[i];
         phi[top][i] = GIC_R(0.0);
