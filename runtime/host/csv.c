@@ -278,27 +278,49 @@ static void check_header(Pool *pool, const CsvTable *table, const Cell *c, const
                   "'%s' is no name of a column", name);
 }
 
+/* The text of a cell without the quotes around it; quotes in it are doubled, as csv_quoted() writes them. */
+static char *unquoted(Pool *pool, const Cell *c)
+{
+    char *text = cell_text(pool, c);
+    const size_t length = strlen(text);
+    if (length < 2 || *text != '"' || text[length - 1] != '"')
+        return text;
+    char *to = text;
+    for (const char *from = text + 1, *stop = text + length - 1; from < stop; ++from) {
+        from += *from == '"' && from + 1 < stop && from[1] == '"';
+        *to++ = *from;
+    }
+    *to = '\0';
+    return text;
+}
+
+/* The bracket that opens the unit at the end of a column's text; NULL: no unit. A unit may have brackets itself, so it
+ * is the first one after a blank, as csv_name() writes it; other programs may leave the blank out. */
+static char *unit_bracket(char *text)
+{
+    const size_t length = strlen(text);
+    if (!length || text[length - 1] != ']')
+        return NULL;
+    char *bracket = strstr(text, " [");
+    return bracket ? bracket + 1 : strrchr(text, '[');
+}
+
 /* Name of a column without quotes; *unit: the unit in brackets after it, NULL: none. */
 static const char *column_name(Pool *pool, const Source *source, Cell c, const char *header, const char **unit)
 {
+    char *text = unquoted(pool, &c), *bracket = unit_bracket(text);
     *unit = NULL;
-    if (c.to - c.from >= 2 && *c.from == '"' && c.to[-1] == '"') {
-        ++c.from;
-        --c.to;
+    if (bracket && bracket > text) {
+        bracket[strlen(bracket) - 1] = '\0';
+        *unit = bracket + 1;
+        *bracket = '\0';
     }
-    if (c.to > c.from && c.to[-1] == ']')
-        for (const char *bracket = c.to; --bracket > c.from;)
-            if (*bracket == '[') {
-                *unit = cell_text(pool, &(Cell){bracket + 1, c.to - 1});
-                c.to = bracket;
-                break;
-            }
-    while (c.to > c.from && is_blank(c.to[-1]))
-        --c.to;
-    if (c.to == c.from)
+    for (char *end = text + strlen(text); end > text && is_blank(end[-1]);)
+        *--end = '\0';
+    if (!*text)
         diag_fail(cell_place(source, &c), pool_print(pool, "the first line names the columns: %s", header),
                   "a column without a name");
-    return cell_text(pool, &c);
+    return text;
 }
 
 static void read_header(Pool *pool, CsvTable *table, const char *header, const char *s, const char *end)

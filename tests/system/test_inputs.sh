@@ -77,6 +77,22 @@ scene 'input_file: recorded.csv'
 run "$work/carts.veh" "$work/a.scene" -o "$work/a.csv"
 check "results as inputs" exits 0
 
+# so they are where a unit has quotes, commas or brackets; another unit is refused as ever
+for unit in 'a"b' '"' '""a""' 'a[b' '[a]' 'a]b' 'a [b], "c"'; do
+    sed "s/unit: N/unit: '$unit'/" "$work/carts.veh" >"$work/unit.veh"
+    scene 'inputs: {push: {formula: "6 * sin(5 * time)"}}
+outputs: [input.push]'
+    run "$work/unit.veh" "$work/a.scene" -o "$work/recorded.csv"
+    scene 'input_file: recorded.csv'
+    run "$work/unit.veh" "$work/a.scene" -o "$work/a.csv"
+    check "unit $unit: results as inputs" exits 0
+    run "$work/carts.veh" "$work/a.scene" -o "$work/a.csv"
+    check "unit $unit: it is told as it is" grep -qF "column 'input.push' is in $unit, and its numbers would be taken for N" "$work/err"
+    run --equilibrium "$work/unit.veh" -o "$work/rest.csv"
+    run --eval "$work/rest.csv" "$work/unit.veh" -o "$work/eval.csv"
+    check "unit $unit: an equilibrium as states" exits 0
+done
+
 # ---- what the inputs do stands in the summary
 scene 'inputs: {drive: {knots: {times: [0, 2], values: [0, 0.4]}}}'
 run "$work/carts.veh" "$work/a.scene" -o "$work/a.csv"
