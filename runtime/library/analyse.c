@@ -243,6 +243,7 @@ int gicl_linearize(gicl_library *library, gicl_handle model, const char *scene, 
 {
     if (result)
         *result = 0;
+    call_begin(library, said);
     if (!isnan(at) && !(at >= 0 && isfinite(at)))
         return call_wrong(said, NULL, "the time must be finite and at least 0, or NaN for rest");
     return analyse(library, model, scene, !isnan(at), at, find_linear, result, said);
@@ -253,6 +254,7 @@ int gicl_gradient(gicl_library *library, gicl_handle model, const char *scene, c
 {
     if (result)
         *result = 0;
+    call_begin(library, said);
     if (!formula || words < 0 || (words && !word))
         return call_wrong(said, NULL, "the formula must not be NULL, and `word` has `words` words");
     const Work work = {.path = scene, .at = NAN, .formula = formula, .word = word, .words = words};

@@ -217,6 +217,23 @@ class Calls(unittest.TestCase):
             with self.assertRaisesRegex(kind, words):
                 call()
 
+    def test_messages_of_one_call(self):
+        """What an earlier call said is not said again."""
+        for call, words in (
+                (lambda: self.model.linearize(SCENE, -1), "libgic: error: the time must be finite and at least 0"),
+                (lambda: self.model.batch(4, lanes=3), "libgic: error: lanes are 1, 2, 4, 8 or 16, not 3"),
+                (lambda: self.model.run(None), "libgic: error: the scene must not be NULL"),
+                (lambda: self.model.write("no"), "libgic: error: there is no study 'no'"),
+                (lambda: self.car().restore(b""), "libgic: error: a snapshot of this model has"),
+                (lambda: gicgen.Model("-"), "libgic: error: the model must be a file")):
+            for _ in range(2):
+                with self.assertRaises(gicgen.Error):
+                    self.model.write("modes", results="/nonexistent/x")
+                with self.assertRaises(gicgen.WrongCall) as caught:
+                    call()
+                self.assertTrue(str(caught.exception).startswith(words), str(caught.exception))
+                self.assertEqual(str(caught.exception).count("error: "), 1)
+
     def test_run_that_ends_early(self):
         with open("build_long.scene", "w") as file:
             file.write("gicscene: 1\nduration: 5\nstep: 0.2\n")
