@@ -69,16 +69,26 @@ static Points rows_between(const Manoeuvre *m, const Trial *trial, double sign)
     return points;
 }
 
-static double slope(const Manoeuvre *m, const Points *points, double sign, Channel channel, bool understeer)
+/* What a slope is taken of, beside channels as they are. */
+typedef enum Part {
+    WHOLE,
+    BEYOND_NO_SLIP, /* the steer angle beyond that of a vehicle without slip, L yaw rate / speed */
+    ON_THE_CIRCLE   /* the steer angle without that of the curvature that is driven beyond the circle's */
+} Part;
+
+static double slope(const Manoeuvre *m, const Points *points, const Limit *limit, Channel channel, Part part)
 {
+    const double sign = limit->sign, wheelbase = m->car->sheet.wheelbase;
     double *x = pool_alloc(m->pool, (size_t)(points->count + 1) * sizeof *x);
     double *y = pool_alloc(m->pool, (size_t)(points->count + 1) * sizeof *y);
     for (int i = 0; i < points->count; ++i) {
         const double *at = points->point[i];
         x[i] = sign * at[TRIAL_AY];
         y[i] = sign * at[channel];
-        if (understeer) /* beyond the angle of a vehicle without slip */
-            y[i] -= m->car->sheet.wheelbase * sign * at[TRIAL_YAW_RATE] / at[TRIAL_SPEED];
+        if (part != WHOLE)
+            y[i] -= wheelbase * sign * at[TRIAL_YAW_RATE] / at[TRIAL_SPEED];
+        if (part == ON_THE_CIRCLE) /* the path's speed is that along the vehicle over cos(side slip) */
+            y[i] += wheelbase / (limit->radius * cos(at[TRIAL_SIDESLIP]));
     }
     return fit_slope(points->count, x, y);
 }
@@ -87,7 +97,7 @@ static void add_results(Manoeuvre *m, const Trial *trial, const Points *points, 
 {
     Sheet *s = m->result;
     const char *side = trial->name, *section = limit->sign > 0 ? "To the left" : "To the right";
-    const double understeer = slope(m, points, limit->sign, TRIAL_ANGLE, true);
+    const double understeer = slope(m, points, limit, TRIAL_ANGLE, BEYOND_NO_SLIP);
     const double wheelbase = m->car->sheet.wheelbase;
     const int peak = trial_peak(trial, TRIAL_AY, begin, INFINITY, limit->sign);
     const double *at = trial->row[peak];
@@ -98,11 +108,11 @@ static void add_results(Manoeuvre *m, const Trial *trial, const Points *points, 
         sheet_add(s, section, pool_print(m->pool, "%s.understeer", side), "Understeer gradient", "rad s^2/m",
                   understeer);
         sheet_add(s, NULL, pool_print(m->pool, "%s.steer_gradient", side), "Steer angle gradient", "rad s^2/m",
-                  slope(m, points, limit->sign, TRIAL_ANGLE, false));
+                  slope(m, points, limit, TRIAL_ANGLE, limit->radius > 0 ? ON_THE_CIRCLE : WHOLE));
         sheet_add(s, NULL, pool_print(m->pool, "%s.roll_gradient", side), "Roll gradient", "rad s^2/m",
-                  slope(m, points, limit->sign, TRIAL_ROLL, false));
+                  slope(m, points, limit, TRIAL_ROLL, WHOLE));
         sheet_add(s, NULL, pool_print(m->pool, "%s.sideslip_gradient", side), "Side-slip gradient", "rad s^2/m",
-                  slope(m, points, limit->sign, TRIAL_SIDESLIP, false));
+                  slope(m, points, limit, TRIAL_SIDESLIP, WHOLE));
         section = NULL;
         if (understeer > 0)
             sheet_add(s, NULL, pool_print(m->pool, "%s.characteristic_speed", side), "Characteristic speed", "m/s",
