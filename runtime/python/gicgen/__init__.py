@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Vehicle models of gicgen in Python: runtime/python/README.md.
+"""Vehicle models of gicgen in Python: runtime/PYTHON.md.
 
     import gicgen
     model = gicgen.Model("car.veh")
