@@ -153,9 +153,10 @@ const char *compiler_contents(Pool *pool, const char *const *words, int count);
 const Engine *engine_cc(Pool *pool, const Model *model, const EngineOptions *options);
 /* Flags for vehicles in lanes: with the elementary functions of lanes; with those of libm, one by one, so that each has
  * the bits that the code for one vehicle gives. Without tires, powertrains and states of a model's own both are libm's.
+ * Where sums and differences of products alternate, gcc 12 fuses them in vectors despite -ffp-contract=off.
  */
 #define IN_LANES "-O3 -march=native"
-#define IN_LANES_AS_ALONE IN_LANES " -DGIC_BATCH_LIBM"
+#define IN_LANES_AS_ALONE IN_LANES " -DGIC_BATCH_LIBM -fno-tree-slp-vectorize"
 
 /* The same for `batch->vehicles` at once, and their descriptor; flags: of the compiler, after build_flags. NULL: not
  * available, *why says the reason. */
