@@ -203,7 +203,15 @@ class Calls(unittest.TestCase):
                 (lambda: self.model.batch(2**32 + 2), ValueError, "vehicles: a whole number from 1 to 16777216"),
                 (lambda: self.model.linearize(SCENE, at=-1), gicgen.WrongCall, "at least 0"),
                 (lambda: car.step(0.001, method="euler"), ValueError, "'ab3' or 'rk4'"),
-                (lambda: car.step(-1), gicgen.RunError, "out of range"),
+                (lambda: car.step(-1), ValueError, "step: a number above 0 is wanted, not -1"),
+                (lambda: batch.step(0), ValueError, "step: a number above 0 is wanted, not 0"),
+                (lambda: car.step(0.001, ratio=10001), ValueError, "ratio: a whole number from 1 to 10000"),
+                (lambda: batch.step(0.001, method="rk4", ratio=2), ValueError, "ratio: 1 is wanted with method 'rk4', not 2"),
+                (lambda: gicgen.Model(QUARTER + "\0.nonsense"), ValueError, "without NUL"),
+                (lambda: self.model.run(SCENE + "\0"), ValueError, "without NUL"),
+                (lambda: car.outputs.__setitem__(0, 99), ValueError, "outputs are computed: they can not be set"),
+                (lambda: batch.outputs.__setitem__("tire.fz", 1), ValueError, "outputs are computed"),
+                (lambda: car.outputs.array.__setitem__(0, 99), ValueError, "read-only"),
                 (lambda: car.restart(math.inf), ValueError, "time: a finite number"),
                 (lambda: car.set_up([1.0]), ValueError, r"shape \(0,\)"),
                 (lambda: car.set_up({"k": 1}), KeyError, "no parameter 'k'"),
@@ -332,11 +340,23 @@ outputs: {turn: {type: coordinate, coordinate: turn}}
         for call, kind, words in (
                 (lambda: self.model.batch(3, lanes=3), gicgen.WrongCall, "lanes are 1, 2, 4, 8 or 16, not 3"),
                 (lambda: self.model.batch(3, lanes=0), ValueError, "lanes: a whole number from 1 to 16"),
+                (lambda: batch.outputs.__setitem__(slice(None), 0), ValueError, "outputs are computed"),
                 (lambda: batch.states["bonce"], KeyError, "is 'bounce' meant"),
                 (lambda: batch.states.__setitem__("bounce", [1, 2]), ValueError, r"shape \(5,\) is wanted, not \(2,\)"),
                 (lambda: batch.states.__setitem__("bounce", math.nan), ValueError, "finite")):
             with self.assertRaisesRegex(kind, words):
                 call()
+
+    def test_lanes_of_tires(self):
+        """With tires, whose functions are libm's in lanes too."""
+        model = gicgen.Model(TIRES)
+        alone, lanes = model.batch(2, COAST), model.batch(2, COAST, lanes=2)
+        for batch in (alone, lanes):
+            batch.states["omega.z"] = [0.1, -0.02]
+            batch.step(0.001, 2, "rk4")
+            batch.step(0.004, 50, ratio=4)
+        self.assertTrue(numpy.array_equal(alone.states[:], lanes.states[:]))
+        self.assertTrue(numpy.array_equal(alone.outputs[:], lanes.outputs[:]))
 
     def test_linear(self):
         linear, modes = self.model.linearize(), self.model.modes()

@@ -29,7 +29,13 @@ _KINDS = {"states": (_library.STATE, "state"), "rates": (_library.RATE, "rate"),
 
 
 def _bytes(text):
-    return None if text is None else os.fsencode(text)
+    """A path, a name or a word, as the library takes it."""
+    if text is None:
+        return None
+    encoded = os.fsencode(text)
+    if b"\0" in encoded:
+        raise ValueError(f"a text without NUL is wanted, not {text!r}")
+    return encoded
 
 
 def _method(name):
@@ -63,8 +69,18 @@ def _steps(value):
     return _count(value, "steps", 0, 2**63 - 1)
 
 
-def _ratio(value):
-    return _count(value, "ratio", 1, 2**31 - 1)
+def _step(value):
+    step = _number(value, "step")
+    if step <= 0:
+        raise ValueError(f"step: a number above 0 is wanted, not {value!r}")
+    return step
+
+
+def _ratio(value, method):
+    ratio = _count(value, "ratio", 1, 10000)  # GIC_RATIOS of gic_runtime.h
+    if ratio > 1 and method != "ab3":
+        raise ValueError(f"ratio: 1 is wanted with method {method!r}, not {value!r}: fast steps go with 'ab3'")
+    return ratio
 
 
 def _vector(value, count, what):
@@ -166,7 +182,7 @@ class Model:
             a = _library.Array()
             call("array_get", handle, i, ctypes.byref(a), ctypes.sizeof(a))
             shape = (a.rows, a.columns)
-            data = view(owned, ctypes.cast(a.data, ctypes.c_void_p).value, shape, (8 * a.columns, 8))
+            data = view(owned, ctypes.cast(a.data, ctypes.c_void_p).value, shape, (8 * a.columns, 8), True)
             data.flags.writeable = False
             arrays[a.name.decode()] = (data, _texts(a.row_name, a.rows), _texts(a.row_unit, a.rows),
                                        _texts(a.column_name, a.columns), _texts(a.column_unit, a.columns))
@@ -299,7 +315,7 @@ class Instance:
             data, count = ctypes.c_void_p(), ctypes.c_int()
             call("view", handle, kind, ctypes.byref(data), ctypes.byref(count))
             names, units = model._signals(name)
-            array = view(self._owned, data.value, (count.value,), (8,))
+            array = view(self._owned, data.value, (count.value,), (8,), name != "outputs")
             self._views[name] = Named(array, names, units, word, self.restart if name == "states" else None)
 
     def close(self):
@@ -357,8 +373,7 @@ class Instance:
         """`steps` steps of `step` seconds, inputs constant; ratio: of ab3, fast steps of wheels and powertrain in each.
         method: 'ab3' or 'rk4'; 'ros2', 'ros3', 'imex' or 'exp3' of a model that was opened with
         it as integrator."""
-        call("step", self._handle, _number(step, "step"), _method(method), _ratio(ratio),
-             _steps(steps))
+        call("step", self._handle, _step(step), _method(method), _ratio(ratio, method), _steps(steps))
 
     def rhs(self, time, states):
         """Rates of states, with the present inputs: a right-hand side for scipy.integrate.solve_ivp."""
@@ -386,7 +401,7 @@ class Batch:
     [vehicles, numbers]; `status` has the status of each after the last call, 0: good.
 
     lanes: 2, 4, 8 or 16: as many make their steps at once, by code of the C compiler for the processor's vectors, which
-    the first such batch waits for and gicrun's cache keeps; models with tires have none. `.array` is then [blocks,
+    the first such batch waits for and gicrun's cache keeps. `.array` is then [blocks,
     lanes, numbers], with vehicle v at [v // lanes, v % lanes]; reading by name or place gives copies, [vehicles,
     numbers]."""
 
@@ -404,11 +419,12 @@ class Batch:
             names, units = model._signals(name)
             changed = self.restart if name == "states" else None
             if lanes == 1:
-                array = view(self._owned, data.value, (vehicles, count.value), (8 * stride.value, 8))
+                array = view(self._owned, data.value, (vehicles, count.value), (8 * stride.value, 8),
+                             name != "outputs")
                 self._views[name] = Named(array, names, units, word, changed)
             else:
                 shape = (-(-vehicles // lanes), lanes, count.value)
-                array = view(self._owned, data.value, shape, (8 * stride.value, 8, 8 * lanes))
+                array = view(self._owned, data.value, shape, (8 * stride.value, 8, 8 * lanes), name != "outputs")
                 self._views[name] = Lanes(array, names, units, word, changed, vehicles)
 
     def close(self):
@@ -447,8 +463,8 @@ class Batch:
 
     def _prepare(self, step, steps, method, ratio):
         """Checked arguments of the library's step, after those that they are made from."""
-        said, number = _library.said.list, _number(step, "step")
-        arguments = _library.batch_arguments(self._handle, number, _method(method), _ratio(ratio), _steps(steps),
+        said, number = _library.said.list, _step(step)
+        arguments = _library.batch_arguments(self._handle, number, _method(method), _ratio(ratio, method), _steps(steps),
                                              self.status.ctypes.data, said)
         self._prepared = number, steps, method, ratio, said, arguments
         return self._prepared

@@ -6,14 +6,16 @@ import difflib
 import numpy
 
 
-def view(owner, address, shape, strides):
-    """An array over memory of the library that `owner` keeps."""
+def view(owner, address, shape, strides, settable):
+    """An array over memory of the library that `owner` keeps; settable: may its numbers be written?"""
     if 0 in shape:
         return numpy.zeros(shape)
     size = sum((n - 1) * s for n, s in zip(shape, strides)) + 8
     memory = (ctypes.c_char * size).from_address(address)
     memory.owner = owner
-    return numpy.ndarray(shape, dtype=float, buffer=memory, strides=strides)
+    array = numpy.ndarray(shape, dtype=float, buffer=memory, strides=strides)
+    array.flags.writeable = settable
+    return array
 
 
 class UnknownName(KeyError):
@@ -69,7 +71,12 @@ class Named(_ByName):
         found = self.array[self._place(key)]
         return found if numpy.ndim(found) else float(found)
 
+    def _check_settable(self):
+        if not self.array.flags.writeable:
+            raise ValueError(f"{self.kind}s are computed: they can not be set")
+
     def __setitem__(self, key, value):
+        self._check_settable()
         at = self._place(key)
         try:
             number = numpy.asarray(value, dtype=float)
@@ -113,6 +120,7 @@ class Lanes(Named):
         return found if numpy.ndim(found) else float(found)
 
     def __setitem__(self, key, value):
+        self._check_settable()
         values = Named(self._copy(), self.names, self.units, self.kind)
         values[key] = value
         blocks, lanes, count = self.array.shape

@@ -2,7 +2,7 @@
 """Vehicles as a vectorised environment in the shape of Gymnasium's VectorEnv, without depending on it."""
 import numpy
 
-from . import _count, _method, _number, _ratio
+from . import _count, _method, _number, _ratio, _step
 from ._arrays import place
 
 
@@ -87,12 +87,10 @@ class VectorEnv:
 
     def __init__(self, model, num_envs, *, scene=None, actions, observations, reward, terminated=None, step=0.005,
                  substeps=1, horizon=1000, method="ab3", ratio=1, scatter=None):
-        self._step, self._substeps = _number(step, "step"), _count(substeps, "substeps", 1, 2**31 - 1)
-        self._method, self._ratio = method, _ratio(ratio)
+        self._step, self._substeps = _step(step), _count(substeps, "substeps", 1, 2**31 - 1)
+        self._method, self._ratio = method, _ratio(ratio, method)
         _method(method)
         self.horizon = _count(horizon, "horizon", 1, 2**31 - 1)
-        if self._step <= 0:
-            raise ValueError(f"step: a number above 0 is wanted, not {step!r}")
         self._reward = _function(reward, "reward")
         self._terminated = None if terminated is None else _function(terminated, "terminated")
         if isinstance(observations, str):
