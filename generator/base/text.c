@@ -23,7 +23,8 @@ static void text_reserve(Text *text, size_t more)
 void text_add(Text *text, const char *s, size_t size)
 {
     text_reserve(text, size);
-    memcpy(text->s + text->size, s, size);
+    if (size > 0) /* an empty text has no place yet */
+        memcpy(text->s + text->size, s, size);
     text->size += size;
     text->s[text->size] = 0;
 }
