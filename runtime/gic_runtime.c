@@ -7,6 +7,8 @@
  */
 #include "gic_runtime.h"
 
+#include <float.h>
+
 #include <math.h>
 
 #ifdef GIC_FLOAT
@@ -665,7 +667,8 @@ static int32_t panel_row(int32_t n, int32_t i)
 #else
 #define GIC_VECTOR 16
 #endif
-#if defined __GNUC__ && !defined __TINYC__ && !defined __cplusplus
+/* nor where numbers are computed with more digits than they have, as by the x87 */
+#if defined __GNUC__ && !defined __TINYC__ && !defined __cplusplus && (FLT_EVAL_METHOD == 0 || FLT_EVAL_METHOD == 16)
 typedef gic_real gic_rows __attribute__((vector_size(GIC_VECTOR), aligned(sizeof(gic_real)), may_alias));
 #else
 typedef gic_real gic_rows;
