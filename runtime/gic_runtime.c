@@ -681,7 +681,7 @@ static void panel_times(int32_t n, const gic_real *panel, const gic_real *x, gic
     for (int32_t row = 0; row < GIC_PANEL; row += BESIDE * ROWS) {
         const gic_real *at = panel + row;
         gic_rows *const to = (gic_rows *)(void *)(sum + row);
-        gic_rows part[4] = {{GIC_R(0.0)}, {GIC_R(0.0)}, {GIC_R(0.0)}, {GIC_R(0.0)}};
+        gic_rows part[4] = {0};
         for (int32_t k = 0; k < n; ++k, at += GIC_PANEL) {
             const gic_rows *const column = (const gic_rows *)(const void *)at;
             part[0] += column[0] * x[k];
