@@ -9,6 +9,7 @@
 #include "gic_runtime.h"
 #include "run/engines.h"
 #include "run/variable_step.h"
+#include "run/run_remedy.h"
 
 #include <math.h>
 #include <string.h>
@@ -244,6 +245,18 @@ static void start(Live *l)
     l->model = faster ? faster : l->model;
 }
 
+/* The run ended with a status; a step that failed left the instance at the last good state. */
+static _Noreturn void fail(Live *l, const Model *model, int status)
+{
+    const char *said = instance_status(l->pool, l->model, l->failed, status);
+    const int subset = l->failed->subset;
+    DeadCentre found = {0};
+    if (l->failed == l->self && find_outputs(l) == GIC_OK)
+        found = run_dead_centre(l->pool, model, l->model, l->copy, status, subset);
+    diag_fail((Place){l->scene->source, 0, 0}, found.finding ? found.remedy : run_remedy(status),
+              "the run ends at t = %.6g s: %s", gic_time(l->self), found.finding ? found.finding : said);
+}
+
 void live(Pool *pool, const Engine *engine, const Model *model, const Scene *scene, LivePort *port,
           const Request *request)
 {
@@ -287,6 +300,5 @@ void live(Pool *pool, const Engine *engine, const Model *model, const Scene *sce
     if (!request->quiet)
         summary(&l);
     if (status != GIC_OK)
-        diag_fail((Place){scene->source, 0, 0}, run_remedy(status), "the run ends at t = %.6g s: %s", gic_time(l.self),
-                  instance_status(pool, l.model, l.failed, status));
+        fail(&l, model, status);
 }

@@ -120,8 +120,6 @@ const Scene *equilibrium_start(Pool *pool, const Model *model, const Scene *scen
  * was made for. A failure on the way keeps what was computed, with the last good state, and ends in diag_fail. */
 void simulate(Pool *pool, const Engine *engine, const Model *mechanism, const Scene *scene, Animation *animation,
               const Request *request);
-/* What to do about a run that ended with a status; NULL: nobody knows. */
-const char *run_remedy(int status);
 /* Evaluate rows of states (--eval). scene may be NULL; only its road is used. */
 void evaluate(Pool *pool, const Engine *engine, const Scene *scene, const Request *request);
 

@@ -8,7 +8,7 @@
 #include "host/host.h"
 #include "model/model.h"
 #include "run/bounce_watch.h"
-#include "run/dead_centre.h"
+#include "run/run_remedy.h"
 #include "run/engines.h"
 #include "run/knot.h"
 #include "run/last_good.h"
@@ -436,51 +436,6 @@ static void summary(const Run *run, double total)
     diag_note(text.s);
 }
 
-const char *run_remedy(int status)
-{
-    switch (status) {
-    case GIC_ERROR_REACH:
-    case GIC_ERROR_NEWTON:
-        return "a step led to where the bodies don't reach, from the state in the last row of the results: try a "
-               "shorter "
-               "step, and check springs, stops and driven coordinates that allow such a motion";
-    case GIC_ERROR_SINGULAR:
-        return "the last row of the results is the last state that the coordinates determine: choose others that do, "
-               "or "
-               "stops that end the motion before";
-    case GIC_ERROR_RESULT:
-    case GIC_ERROR_INPUT: return "the run has probably become unstable: try a shorter step";
-    case GIC_ERROR_ORIENTATION: return "the base turns too far within a step, by more than 0.2 rad: try a shorter step";
-    case GIC_ERROR_UNSTABLE:
-        return "try a shorter step, or variable ones (--integrator adams); where that changes nothing, the model "
-               "itself is unstable: gicrun --modes shows its eigenvalues";
-    case GIC_ERROR_PIVOT:
-        return "try a shorter step; where that changes nothing, the model itself is unstable: gicrun --modes shows its "
-               "eigenvalues";
-    case GIC_ERROR_ASSUMPTION: return "--general makes code that takes nothing for granted";
-    case GIC_ERROR_EVENTS:
-        return "try a shorter step, or a longer `duration` of the transmission's shifts; `locate: false` with "
-               "constant ones goes over contacts";
-    case GIC_ERROR_RESIDUAL:
-        return "results so far are suspect too; --engine gic shares no formulas with this code: please report model "
-               "and scene";
-    case GIC_ERROR_ARGUMENT: return "the tolerance can't be reached in double precision: write a larger one";
-    default: return NULL;
-    }
-}
-
-static const char *remedy_at_start(int status)
-{
-    switch (status) {
-    case GIC_ERROR_ASSUMPTION:
-    case GIC_ERROR_RESIDUAL: return run_remedy(status);
-    case GIC_ERROR_RESULT:
-        return "does a formula divide by zero there, or take a root of a negative number? Are initial velocities or "
-               "loads too large?";
-    default: return "is the initial state one that the mechanism can reach from its design?";
-    }
-}
-
 /* ---- the run -------------------------------------------------------------------------------------------- */
 
 int scene_start(const Engine *engine, const Scene *scene, gic_head *self)
@@ -723,13 +678,11 @@ static const char *explain(Run *run, const Model *mechanism, const gic_head *fai
         if (*end > run->recorded)
             record(run, run->copy);
     }
-    if (status != GIC_ERROR_REACH && status != GIC_ERROR_NEWTON && status != GIC_ERROR_SINGULAR)
-        return said;
-    const DeadCentre found = dead_centre_find(run->pool, mechanism, run->model, run->copy, subset);
+    const DeadCentre found = run_dead_centre(run->pool, mechanism, run->model, run->copy, status, subset);
     if (!found.finding)
         return said;
     *remedy = pool_print(run->pool, "%s; the last row of the results is the last state", found.remedy);
-    return pool_print(run->pool, "%s: subset '%s'", found.finding, run->engine->code->subset_name[subset]);
+    return found.finding;
 }
 
 void simulate(Pool *pool, const Engine *engine, const Model *mechanism, const Scene *whole, Animation *animation,
@@ -756,7 +709,7 @@ void simulate(Pool *pool, const Engine *engine, const Model *mechanism, const Sc
         diag_fail(program_place(), NULL, "no memory for the integrator");
     status = compute_outputs(&run);
     if (status != GIC_OK)
-        diag_fail(at, remedy_at_start(status), "the run can't start: %s",
+        diag_fail(at, run_remedy_at_start(status), "the run can't start: %s",
                   instance_status(pool, model, run.copy, status));
     run.good = last_good_new(pool, engine);
     run.bounces = scene->page ? NULL : bounce_watch_new(pool, theory, whole, engine);
@@ -764,7 +717,7 @@ void simulate(Pool *pool, const Engine *engine, const Model *mechanism, const Sc
     run.outcome = outcome_new();
     run.events = scene_events_new(pool, engine, scene, run.self, &status);
     if (status != GIC_OK)
-        diag_fail(at, remedy_at_start(status), "the run can't start: %s",
+        diag_fail(at, run_remedy_at_start(status), "the run can't start: %s",
                   instance_status(pool, model, run.self, status));
     prepare_plot(&run);
     interrupt_hold(); /* else the temporary file of the results would remain */

@@ -241,6 +241,20 @@ run --live 0 failing.veh failing.scene --seconds 3 --record inputs.csv
 check 'a run that fails' exits 1
 run -q --replay inputs.csv failing.veh failing.scene -o again.csv
 check 'fails when it is replayed' exits 1
+# a rod and its strut come on one line where the strut is 2 + 1 m long
+cat >strut.veh <<'END'
+gicgen: 1
+model: strut
+gravity: [0, 0, 0]
+base: ground
+bodies: {rod: {mass: 1, com: [0, 1, 0], inertia: [0.1, 0.1, 0.1]}}
+joints: {hinge: {type: revolute, bodies: [ground, rod], point: [0, 0, 0], axis: [0, 0, 1]}}
+coordinates: {strut: {type: length, bodies: [ground, rod], points: [[-2, 0, 0], [0, 1, 0]], range: [0.5, 4]}}
+END
+printf 'gicscene: 1\nduration: 2\nstep: 0.005\ninitial: {rates: {strut: 1}}\n' >strut.scene
+run --live 0 strut.veh strut.scene --seconds 2
+check 'a dead centre ends the run' exits 1
+check 'it is named' says "dead centre.*'strut' = 3 m"
 
 # ---- mistakes
 
