@@ -537,6 +537,16 @@ static void implicit_drift(const gic_model *model, void *self, const Implicit *w
             w->drift[i] += w->jacobian[w->how->columns * i + w->n + k] * (w->change[k] - input[k]);
 }
 
+/* Evaluate the rates at a stage of an implicit or exponential step. Where it is beyond all bounds, record which
+ * number is. */
+static int stage_rates(const gic_model *model, void *self, gic_real time, const gic_real *stage, gic_real *rate)
+{
+    const int status = evaluate(model, self, time, stage, rate);
+    if (status == GIC_ERROR_INPUT)
+        (void)out_of_bounds(self, stage, 0, model->slow_count + model->fast_count);
+    return status;
+}
+
 /* ROS3 (also for steps of EXP3 of another length), or ROS2 (also for steps of IMEX without history), for the whole
  * state, with its rate at `from`; checked: that was checked. */
 static int rosenbrock(const gic_model *model, void *self, gic_real time, gic_real step, int32_t method,
@@ -558,9 +568,7 @@ static int rosenbrock(const gic_model *model, void *self, gic_real time, gic_rea
                 for (int32_t j = 0; j < k; ++j)
                     w.stage[i] += r->place[k][j] * w.increment[w.n * j + i];
             }
-            status = evaluate(model, self, time + r->at[k] * step, w.stage, w.b);
-            if (status == GIC_ERROR_INPUT)
-                (void)out_of_bounds(self, w.stage, 0, w.n);
+            status = stage_rates(model, self, time + r->at[k] * step, w.stage, w.b);
             if (status != GIC_OK)
                 return status;
         }
@@ -661,13 +669,14 @@ static int32_t panel_row(int32_t n, int32_t i)
     return i / GIC_PANEL * GIC_PANEL * n + i % GIC_PANEL;
 }
 
-/* As many rows as a vector of the processor has; a loop over all rows of a panel would keep its sums in memory. */
+/* Rows that are added up at once: those of one vector of the processor, since compilers keep the sums of a loop over
+ * all rows of a panel in memory. Single numbers where there are no vectors, in C++, and where sums have more digits
+ * than numbers (x87). */
 #if defined __AVX__
 #define GIC_VECTOR 32
 #else
 #define GIC_VECTOR 16
 #endif
-/* nor where numbers are computed with more digits than they have, as by the x87 */
 #if defined __GNUC__ && !defined __TINYC__ && !defined __cplusplus && (FLT_EVAL_METHOD == 0 || FLT_EVAL_METHOD == 16)
 typedef gic_real gic_rows __attribute__((vector_size(GIC_VECTOR), aligned(sizeof(gic_real)), may_alias));
 #else
@@ -725,7 +734,7 @@ static void panels_unit(int32_t n, gic_real number, gic_real *matrix)
         matrix[GIC_PANEL * i + panel_row(n, i)] += number;
 }
 
-/* A, in the place of a matrix: rows of velocities solved for accelerations, those of positions. */
+/* The matrix A: rows of velocities are accelerations, for which W is solved; rows of positions are velocities. */
 static int exponential_slopes(const Implicit *w, void *self, const Exponential *e, gic_real *a)
 {
     const gic_implicit *how = w->how;
@@ -742,7 +751,7 @@ static int exponential_slopes(const Implicit *w, void *self, const Exponential *
     if (how->mass_count == 0)
         return GIC_OK;
     const int status = implicit_exchange(w, self, GIC_R(0.0)); /* factors of W */
-    w->head->exchanged = 1;
+    w->head->exchanged = 1;                                    /* implicit_solve() takes these factors */
     for (int32_t j = 0; j < n && status == GIC_OK; ++j) {
         gic_real *const column = a + GIC_PANEL * j;
         for (int32_t i = 0; i < n; ++i)
@@ -860,23 +869,20 @@ static int exponential_begin(const gic_model *model, void *self, gic_real time, 
     const Exponential e = exponential_of(model, self);
     gic_real *const a = e.work[2], *const unit = w.drift, *const column = w.change;
     w.head->span = GIC_R(0.0);
-    w.head->used = w.head->shared = w.head->lost = 0; /* its place is needed */
+    w.head->used = w.head->shared = w.head->lost = 0; /* the Jacobian takes the place of one that is kept */
     ++w.head->jacobian_count;
     int status = w.how->jacobian(self, time, from, w.jacobian);
     if (status == GIC_OK)
         status = exponential_slopes(&w, self, &e, a);
     if (status != GIC_OK)
         return status;
-    int32_t lost = panels_lost(e.n, a);
-    const gic_real norm = lost < 0 ? exponential_balance(&e, a, unit) : GIC_R(0.0);
+    const gic_real norm = exponential_balance(&e, a, unit), short_step = node * step;
     gic_real *const to_node[] = {e.work[0], e.at_node[0], e.at_node[1]};
     gic_real *const to_end[] = {e.work[0], e.at_end[0], e.at_end[1], e.at_end[2]};
-    const gic_real short_step = node * step;
-    int made = lost < 0;
-    if (made)
-        made = exponential_functions(&e, a, short_step, short_step * norm, 2, to_node, e.at_end[0], e.work[1], column);
-    if (made)
-        made = exponential_functions(&e, a, step, step * norm, 3, to_end, a, e.work[1], column);
+    int32_t lost = -1;
+    int made =
+        exponential_functions(&e, a, short_step, short_step * norm, 2, to_node, e.at_end[0], e.work[1], column) &&
+        exponential_functions(&e, a, step, step * norm, 3, to_end, a, e.work[1], column);
     for (int32_t k = 0; k < 5 && made; ++k) { /* they stand one after another */
         gic_real *const matrix = e.at_node[0] + k * e.size;
         for (int32_t j = 0; j < e.n; ++j)
@@ -892,15 +898,6 @@ static int exponential_begin(const gic_model *model, void *self, gic_real time, 
     w.head->span = step;
     w.head->spent = 0;
     return GIC_OK;
-}
-
-/* Evaluate the rates at a stage. */
-static int stage_rates(const gic_model *model, void *self, gic_real time, const gic_real *stage, gic_real *rate)
-{
-    const int status = evaluate(model, self, time, stage, rate);
-    if (status == GIC_ERROR_INPUT)
-        (void)out_of_bounds(self, stage, 0, model->slow_count + model->fast_count);
-    return status;
 }
 
 /* EXP3 with the exponentials that there are. past: the rate at the start of the step before; NULL: no history. */
@@ -954,8 +951,8 @@ static int exp3(const gic_model *model, void *self, gic_real time, gic_real step
     return GIC_OK;
 }
 
-/* A step by exponentials. Those for its length are made where there are none, or too old ones, and where it is the
- * second one of this length; a single step of another length is ROS3's. */
+/* A step of EXP3. Exponentials for its length are made if there are none, if those there are have served long enough,
+ * or if the last step had this length too. A single step of another length is made by ROS3, which costs less. */
 static int exponential(const gic_model *model, void *self, gic_real time, gic_real step, const gic_real *from,
                        const gic_real *rate, const gic_real *past, int checked, gic_real *next)
 {

@@ -275,9 +275,8 @@ static void write_stillness(const Generation *g, Text *out, int indent, int s)
             text_print(out, " && GIC_FABS(dlinks.%s[%d]) <= R(0.0)", k ? "rate" : "x", j); /* not so of a NaN */
         text_print(out, ";\n");
     }
-    /* &array[0], not the array: of 8 alike subsets it has as many numbers as one subset bytes, which gcc takes for a
-     * slip
-     * (-Wmemset-elt-size) */
+    /* &array[0], not the array: gcc warns (-Wmemset-elt-size) if the array has as many numbers as the subset has bytes,
+     * as it has of 8 alike subsets */
     line(out, indent, "if (idle) {");
     line(out, indent + 4, "memset(&along->motion[%s], 0, %d * sizeof(gic_real));", body_motion_text(g, subset->body[0]),
          layout->bodies * layout->motion_size);

@@ -373,9 +373,7 @@ static void tell_begin(const Bench *bench, const char *engine)
         "`late gears`, for scenes in which the gear changes, leaves it to the end of the step in which it is due. "
         "`contacts located`, for scenes in which wheels or stops get or lose their load, makes steps in parts there "
         "(`locate: true`). Variable steps end at both. Scenes with an implicit integrator (`ros2`, `ros3`, `imex`, "
-        "`exp3`, "
-        "`bdf`) "
-        "are gone by all of these too, and times are compared at equal errors.");
+        "`exp3`, `bdf`) are gone by all of these too, and times are compared at equal errors.");
 }
 
 /* ---- files of their own ------------------------------------------------------------------------------------- */

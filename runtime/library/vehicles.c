@@ -209,10 +209,7 @@ int vehicles_lack(const Vehicles *vehicles, int method, gicl_messages *said)
     const gic_implicit *implicit = vehicles->code->implicit;
     if (!method_implicit(method) || (implicit && (method != GIC_EXP3 || implicit->exponential_offset > 0)))
         return GICL_OK;
-    return call_wrong(said,
-                      method == GIC_EXP3
-                          ? "open the model with the integrator exp3, by an engine of generated code"
-                          : "open the model with the integrator ros2, ros3 or imex, by an engine of generated code",
+    return call_wrong(said, "open the model with it as integrator, by an engine of generated code",
                       method == GIC_EXP3 ? "its code has no exponential steps" : "its code has no implicit steps");
 }
 

@@ -482,7 +482,8 @@ static void check_scene(Pool *pool, const Model *model, const Scene *scene)
         const char *what, *remedy;
     } refused[] = {
         {scene->method >= METHOD_ADAMS, "steps vary", "choose `integrator: rk4` or `ab3` and a `step`"},
-        {scene_implicit(scene), "steps are implicit", "choose `integrator: rk4` or `ab3`, with a shorter `step`"},
+        {scene_implicit(scene), "steps are implicit or exponential",
+         "choose `integrator: rk4` or `ab3`, with a shorter `step`"},
         {scene->steady > 0, "fast states take longer steps where they are steady", "leave `steady` out"},
         {condition_count(scene) != condition_has(model), "conditions change the run", "leave `until` and `when` out"},
         {scene->rest, "the vehicle may sleep", "leave `sleep` out"},

@@ -117,9 +117,9 @@ const char *integrator_name(int32_t method);
 enum { KEEP_MOST = 1000 }; /* steps with one Jacobian */
 /* True for methods that need code with implicit steps: GIC_ROS2, GIC_ROS3, GIC_IMEX, GIC_EXP3. */
 bool method_implicit(int32_t method);
+bool scene_implicit(const Scene *scene); /* the same of its method */
 /* The method for parts of a step, of any length: GIC_RK4 or an implicit one. */
 int32_t scene_method_of_parts(const Scene *scene);
-bool scene_implicit(const Scene *scene); /* the same of its method */
 /* Where the scene has this key; the file as a whole if it does not. */
 Place scene_place(const Scene *scene, const char *key);
 /* Fail if the scene has the integrator `auto`. what: "a page" */
