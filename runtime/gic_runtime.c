@@ -670,14 +670,15 @@ static int32_t panel_row(int32_t n, int32_t i)
 }
 
 /* Rows that are added up at once: those of one vector of the processor, since compilers keep the sums of a loop over
- * all rows of a panel in memory. Single numbers where there are no vectors, in C++, and where sums have more digits
- * than numbers (x87). */
+ * all rows of a panel in memory. Single numbers where there are no vectors, in C++, where sums have more digits than
+ * numbers (x87), and for Frama-C, which reads no vectors. */
 #if defined __AVX__
 #define GIC_VECTOR 32
 #else
 #define GIC_VECTOR 16
 #endif
-#if defined __GNUC__ && !defined __TINYC__ && !defined __cplusplus && (FLT_EVAL_METHOD == 0 || FLT_EVAL_METHOD == 16)
+#if defined __GNUC__ && !defined __TINYC__ && !defined __cplusplus && !defined __FRAMAC__ && \
+    (FLT_EVAL_METHOD == 0 || FLT_EVAL_METHOD == 16)
 typedef gic_real gic_rows __attribute__((vector_size(GIC_VECTOR), aligned(sizeof(gic_real)), may_alias));
 #else
 typedef gic_real gic_rows;

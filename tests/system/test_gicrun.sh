@@ -389,7 +389,7 @@ badstates() {
     check "bad states: no results for $4" [ ! -e "$work/never.csv" ]
 }
 badstates 'w,w.rat' '1,2' 1:3 "no state, input or tunable parameter 'w.rat'"
-badstates 'w [rad] [rad],w.rate' '1,2' 1:1 "'w .rad.'"
+badstates 'w [rad] [rad],w.rate' '1,2' 1:1 "column 'w' is in rad. .rad,"
 badstates 'w' '1' 1:1 'columns are missing'
 badstates 'w,w.rate' '1,2,3' 2:5 'more than'
 badstates 'w,w.rate' '1,1.5 mm' 2:3 'must be a number'

@@ -243,7 +243,7 @@ refuse() {
     check "message: $1" says "^$work/bad.scene:[0-9]*:[0-9]*: error: .*$1"
     check "remedy of: $1" says "remedy: .*$2"
 }
-refuse "no integrator 'adam'" 'write ab3, rk4, ros2, ros3, imex, adams, rkck, bdf or auto' 's/adams/adam/'
+refuse "no integrator 'adam'" 'write ab3, rk4, ros2, ros3, imex, exp3, adams, rkck, bdf or auto' 's/adams/adam/'
 refuse 'tolerance must be between 1e-13 and 0.1' 'for example 1e-6' 's/^tolerance.*/tolerance: 1e-14/'
 refuse 'tolerance must be between 1e-13 and 0.1' 'for example 1e-6' 's/^tolerance.*/tolerance: 1/'
 refuse 'ab3 has constant steps' 'integrator: adams' 's/adams/ab3/'
