@@ -632,17 +632,25 @@ static int imex(const gic_model *model, void *self, gic_real time, gic_real step
  * step before, its own start and `node` of it; the order is 3 for any A, since the parabola's integral over a step is
  * exact for cubics but for 1/36 of them, and the state at the node, by a straight line, is right to h^3. A step without
  * history has the straight line through its start and the node in place of the parabola, which for this node is exact
- * for parabolas, too. A itself is not needed for it: z phi_k+1(z) = phi_k(z) - 1 / k!. (Exponential Adams methods:
- * Norsett 1969; Hochbruck and Ostermann, Acta Numerica 2010.) */
+ * for parabolas, too. Functions at the node are floats: what A tells of the rates is right for any state there, so that
+ * their roundings only meet what it lacks. A itself is not needed: z phi_k+1(z) = phi_k(z) - 1 / k!. (Exponential Adams
+ * methods: Norsett 1969; Hochbruck and Ostermann, Acta Numerica 2010.) */
 static const gic_real node = GIC_R(0.66666666666666663);
 
 enum { FUNCTIONS = 4, SERIES = 13, HALVINGS = 60, SWEEPS = 20 };
 
+/* Numbers of functions at the node, in the place of matrices of gic_real. */
+#ifdef __GNUC__
+typedef float gic_brief __attribute__((may_alias));
+#else
+typedef float gic_brief;
+#endif
+
 /* Its numbers in an instance. Matrices have panels of GIC_PANEL rows, each column by column. */
 typedef struct Exponential {
-    int32_t n, size;      /* states; numbers of a matrix */
-    gic_real *at_node[2]; /* phi_1, phi_2 of node h A */
-    gic_real *at_end[3];  /* phi_1, phi_2, phi_3 of h A */
+    int32_t n, size;       /* states; numbers of a matrix */
+    gic_brief *at_node[2]; /* phi_1, phi_2 of node h A */
+    gic_real *at_end[3];   /* phi_1, phi_2, phi_3 of h A */
     gic_real *work[3];
     gic_real *change; /* what the state changed by in the step before */
 } Exponential;
@@ -654,7 +662,7 @@ static Exponential exponential_of(const gic_model *model, void *self)
     e.n = model->slow_count + model->fast_count;
     e.size = (e.n + GIC_PANEL - 1) / GIC_PANEL * GIC_PANEL * e.n;
     for (int32_t i = 0; i < 2; ++i, at += e.size)
-        e.at_node[i] = at;
+        e.at_node[i] = (gic_brief *)(void *)at;
     for (int32_t i = 0; i < 3; ++i, at += e.size)
         e.at_end[i] = at;
     for (int32_t i = 0; i < 3; ++i, at += e.size)
@@ -672,39 +680,55 @@ static int32_t panel_row(int32_t n, int32_t i)
 /* Rows that are added up at once: those of one vector of the processor, since compilers keep the sums of a loop over
  * all rows of a panel in memory. Single numbers where there are no vectors, in C++, where sums have more digits than
  * numbers (x87), and for Frama-C, which reads no vectors. */
-#if defined __AVX__
+#if defined __GNUC__ && !defined __TINYC__ && !defined __cplusplus && !defined __FRAMAC__ && \
+    (FLT_EVAL_METHOD == 0 || FLT_EVAL_METHOD == 16)
+#if defined __AVX512F__
+#define GIC_VECTOR 64
+#elif defined __AVX__
 #define GIC_VECTOR 32
 #else
 #define GIC_VECTOR 16
 #endif
-#if defined __GNUC__ && !defined __TINYC__ && !defined __cplusplus && !defined __FRAMAC__ && \
-    (FLT_EVAL_METHOD == 0 || FLT_EVAL_METHOD == 16)
-typedef gic_real gic_rows __attribute__((vector_size(GIC_VECTOR), aligned(sizeof(gic_real)), may_alias));
+#define ROWS_OF(number) \
+    __attribute__((vector_size(GIC_VECTOR < GIC_PANEL * sizeof(number) ? GIC_VECTOR : GIC_PANEL * sizeof(number)), \
+                   aligned(sizeof(number)), may_alias))
 #else
-typedef gic_real gic_rows;
+#define ROWS_OF(number)
 #endif
-enum { ROWS = sizeof(gic_rows) / sizeof(gic_real), BESIDE = 2 * ROWS < GIC_PANEL ? 4 : 2 };
+typedef gic_real gic_rows ROWS_OF(gic_real);
+typedef float gic_brief_rows ROWS_OF(float);
 
-/* sum[GIC_PANEL] = the rows of a panel, times x[n]. The bits don't depend on the length of vectors. */
-static void panel_times(int32_t n, const gic_real *panel, const gic_real *x, gic_real *sum)
-{
-    for (int32_t row = 0; row < GIC_PANEL; row += BESIDE * ROWS) {
-        const gic_real *at = panel + row;
-        gic_rows *const to = (gic_rows *)(void *)(sum + row);
-        gic_rows part[4] = {0};
-        for (int32_t k = 0; k < n; ++k, at += GIC_PANEL) {
-            const gic_rows *const column = (const gic_rows *)(const void *)at;
-            part[0] += column[0] * x[k];
-            part[1] += column[1] * x[k];
-            if (BESIDE > 2) {
-                part[2] += column[2] * x[k];
-                part[3] += column[3] * x[k];
-            }
-        }
-        for (int32_t i = 0; i < BESIDE; ++i)
-            to[i] = part[i];
+/* Fetch what is needed soon: right-hand sides drive matrices from the first caches. */
+#ifdef __GNUC__
+#define SOON(place) __builtin_prefetch(place)
+#else
+#define SOON(place) (void)0
+#endif
+
+/* sum[GIC_PANEL] = the rows of a panel, times x[n]. Every fourth column is added up by itself, since sums wait for one
+ * another; the bits don't depend on the length of vectors. */
+#define PANEL_TIMES(name, number, rows) \
+    static void name(int32_t n, const number *panel, const number *x, number *sum) \
+    { \
+        for (uint32_t row = 0; row < GIC_PANEL; row += sizeof(rows) / sizeof(number)) { \
+            const number *at = panel + row; \
+            rows part = {0}, second = part, third = part, fourth = part; \
+            int32_t k = 0; \
+            for (; k + 3 < n; k += 4, at += 4 * GIC_PANEL) { \
+                for (uint32_t i = 0; i < 4 * GIC_PANEL && row == 0; i += 64 / sizeof(number)) \
+                    SOON(at + GIC_AHEAD + i); \
+                part += *(const rows *)(const void *)at * x[k]; \
+                second += *(const rows *)(const void *)(at + GIC_PANEL) * x[k + 1]; \
+                third += *(const rows *)(const void *)(at + 2 * GIC_PANEL) * x[k + 2]; \
+                fourth += *(const rows *)(const void *)(at + 3 * GIC_PANEL) * x[k + 3]; \
+            } \
+            for (; k < n; ++k, at += GIC_PANEL) \
+                part += *(const rows *)(const void *)at * x[k]; \
+            *(rows *)(void *)(sum + row) = (part + third) + (second + fourth); \
+        } \
     }
-}
+PANEL_TIMES(panel_times, gic_real, gic_rows)
+PANEL_TIMES(brief_times, gic_brief, gic_brief_rows)
 
 /* y += matrix x */
 static void panels_add(int32_t n, const gic_real *matrix, const gic_real *x, gic_real *y)
@@ -714,6 +738,17 @@ static void panels_add(int32_t n, const gic_real *matrix, const gic_real *x, gic
         panel_times(n, matrix + first * n, x, sum);
         for (int32_t l = 0; l < GIC_PANEL && first + l < n; ++l)
             y[first + l] += sum[l];
+    }
+}
+
+/* The same of floats. */
+static void brief_add(int32_t n, const gic_brief *matrix, const gic_brief *x, gic_real *y)
+{
+    gic_brief sum[GIC_PANEL];
+    for (int32_t first = 0; first < n; first += GIC_PANEL) {
+        brief_times(n, matrix + first * n, x, sum);
+        for (int32_t l = 0; l < GIC_PANEL && first + l < n; ++l)
+            y[first + l] += (gic_real)sum[l];
     }
 }
 
@@ -853,7 +888,22 @@ static int exponential_functions(const Exponential *e, const gic_real *a, gic_re
     return 1;
 }
 
-/* A number of a matrix that is not finite, as the index of its row in state[]; -1: there is none. */
+/* Keep a function at the node as floats. What is below 1e-30 is nothing beside the state, and slow as a float. Returns
+ * a number of it that is not below 1e30, as the index of its row in state[]; -1: there is none. */
+static int32_t brief_keep(const Exponential *e, const gic_real *matrix, gic_brief *brief)
+{
+    int32_t lost = -1;
+    for (int32_t i = 0; i < e->size; ++i) {
+        const gic_real number = matrix[i], size = absolute(number);
+        const int fits = size < GIC_R(1e30);
+        brief[i] = (gic_brief)(fits && size > GIC_R(1e-30) ? number : GIC_R(0.0));
+        if (!fits)
+            lost = i / (GIC_PANEL * e->n) * GIC_PANEL + i % GIC_PANEL;
+    }
+    return lost;
+}
+
+/* A number of a matrix that is not finite, by the index of its row in the same way. */
 static int32_t panels_lost(int32_t n, const gic_real *matrix)
 {
     for (int32_t i = 0; i < n; ++i)
@@ -878,18 +928,20 @@ static int exponential_begin(const gic_model *model, void *self, gic_real time, 
     if (status != GIC_OK)
         return status;
     const gic_real norm = exponential_balance(&e, a, unit), short_step = node * step;
-    gic_real *const to_node[] = {e.work[0], e.at_node[0], e.at_node[1]};
-    gic_real *const to_end[] = {e.work[0], e.at_end[0], e.at_end[1], e.at_end[2]};
+    gic_real *const kept[] = {(gic_real *)(void *)e.at_node[0], (gic_real *)(void *)e.at_node[1], e.at_end[0],
+                              e.at_end[1], e.at_end[2]};
+    gic_real *const to_node[] = {e.work[0], kept[0], kept[1]};
+    gic_real *const to_end[] = {e.work[0], kept[2], kept[3], kept[4]};
     int32_t lost = -1;
     int made =
         exponential_functions(&e, a, short_step, short_step * norm, 2, to_node, e.at_end[0], e.work[1], column) &&
         exponential_functions(&e, a, step, step * norm, 3, to_end, a, e.work[1], column);
-    for (int32_t k = 0; k < 5 && made; ++k) { /* they stand one after another */
-        gic_real *const matrix = e.at_node[0] + k * e.size;
+    for (int32_t k = 0; k < 5 && made; ++k) {
+        gic_real *const matrix = kept[k];
         for (int32_t j = 0; j < e.n; ++j)
             for (int32_t i = 0; i < e.n; ++i)
                 matrix[GIC_PANEL * j + panel_row(e.n, i)] *= unit[i] / unit[j];
-        lost = panels_lost(e.n, matrix);
+        lost = k < 2 ? brief_keep(&e, matrix, e.at_node[k]) : panels_lost(e.n, matrix);
         made = lost < 0;
     }
     if (!made) {
@@ -909,36 +961,42 @@ static int exp3(const gic_model *model, void *self, gic_real time, gic_real step
     const Exponential e = exponential_of(model, self);
     const gic_real part = node * step;
     gic_real *const x = w.increment, *const y = x + e.n, *const z = y + e.n, *const stage = w.stage, *const there = w.b;
+    gic_brief *const near_x = (gic_brief *)(void *)x, *const near_y = near_x + e.n;
     for (int32_t i = 0; i < e.n; ++i) {
         const gic_real moved = past ? node * e.change[i] : GIC_R(0.0);
         stage[i] = from[i] + moved;
-        x[i] = part * rate[i] - moved;
-        y[i] = past ? node * part * (rate[i] - past[i]) : GIC_R(0.0);
+        near_x[i] = (gic_brief)(part * rate[i] - moved);
+        near_y[i] = (gic_brief)(past ? node * part * (rate[i] - past[i]) : GIC_R(0.0));
     }
-    panels_add(e.n, e.at_node[0], x, stage);
+    brief_add(e.n, e.at_node[0], near_x, stage);
     if (past)
-        panels_add(e.n, e.at_node[1], y, stage);
+        brief_add(e.n, e.at_node[1], near_y, stage);
     int status = stage_rates(model, self, time + part, stage, there);
     if (!past && status == GIC_OK) { /* once more, now with a straight line */
         for (int32_t i = 0; i < e.n; ++i) {
-            x[i] = from[i] - stage[i];
-            y[i] = part * (there[i] - rate[i]);
-            stage[i] -= x[i];
+            const gic_real back = from[i] - stage[i];
+            near_x[i] = (gic_brief)back;
+            near_y[i] = (gic_brief)(part * (there[i] - rate[i]));
+            stage[i] -= back;
         }
-        panels_add(e.n, e.at_node[0], x, stage);
-        panels_add(e.n, e.at_node[1], y, stage);
+        brief_add(e.n, e.at_node[0], near_x, stage);
+        brief_add(e.n, e.at_node[1], near_y, stage);
         status = stage_rates(model, self, time + part, stage, there);
     }
     if (status != GIC_OK)
         return status;
+    const gic_real line = GIC_R(1.0) / node, curve = line / (node + GIC_R(1.0));
     for (int32_t i = 0; i < e.n; ++i) {
         const gic_real moved = stage[i] - from[i], grown = there[i] - rate[i];
-        gic_real slope = moved / node, rise = grown / node, bend = GIC_R(0.0), turn = GIC_R(0.0);
+        gic_real slope, rise, bend = GIC_R(0.0), turn = GIC_R(0.0);
         if (past) { /* parabolas through what is before, 0, and at the node: bend t^2 + slope t, and of rates */
-            bend = (moved - node * e.change[i]) / (node * (node + GIC_R(1.0)));
-            turn = (grown + node * (past[i] - rate[i])) / (node * (node + GIC_R(1.0)));
+            bend = curve * (moved - node * e.change[i]);
+            turn = curve * (grown + node * (past[i] - rate[i]));
             slope = bend + e.change[i];
             rise = turn - (past[i] - rate[i]);
+        } else {
+            slope = line * moved;
+            rise = line * grown;
         }
         next[i] = from[i] + slope + bend;
         x[i] = step * rate[i] - slope;

@@ -285,9 +285,10 @@ typedef struct gic_implicit {
 #define GIC_IMPLICIT(n, columns) ((n) * ((columns) + (n) + 7) + (columns))
 
 /* Five functions of a matrix that stay, three matrices of work space, and a row: matrices by panels of so many rows,
- * which take the place of full ones at their end. */
-#define GIC_PANEL 16
-#define GIC_EXPONENTIAL(n) ((8 * (((n) + GIC_PANEL - 1) / GIC_PANEL) * GIC_PANEL + 1) * (n))
+ * which take the place of full ones at their end; numbers are fetched GIC_AHEAD before they are needed. */
+#define GIC_PANEL 8
+#define GIC_AHEAD 256
+#define GIC_EXPONENTIAL(n) ((8 * (((n) + GIC_PANEL - 1) / GIC_PANEL) * GIC_PANEL + 1) * (n) + GIC_AHEAD)
 
 typedef struct gic_model {
     uint32_t abi_version; /* GIC_ABI_VERSION of the generated code */

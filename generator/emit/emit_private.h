@@ -245,6 +245,7 @@ int implicit_unknowns(const Generation *g, int **unknown, int **position);
 bool implicit_is_short(Generation *g);
 void write_implicit_sizes(Generation *g, Text *out, int indent);
 void write_implicit_members(void *context, Text *out, int indent);
+void write_exponential_member(void *context, Text *out, int indent);
 void write_implicit_code(Generation *g, Text *out);
 void write_implicit(void *context, Text *out, int indent);
 

@@ -58,10 +58,15 @@ void write_implicit_members(void *context, Text *out, int indent)
     line(out, indent, "gic_implicit_head implicit; /* of implicit steps: .keep is for the caller */");
     line(out, indent, "gic_real implicit_number[GIC_IMPLICIT(%s_STATE_ROOM, %d) + %d%s];", g->upper,
          jacobian_columns(g), weighed ? weighed->masses : 0, is_spread(g) ? spread_numbers(g) : "");
-    if (g->style->exponential)
-        line(out, indent, "gic_real exponential[GIC_EXPONENTIAL(%s_STATE_ROOM)];", g->upper);
     line(out, indent, "int32_t implicit_pivot[%s];", /* C has no empty arrays */
          unknowns(g) ? pool_print(g->pool, "%s_IMPLICIT_UNKNOWNS", g->upper) : "1");
+}
+
+void write_exponential_member(void *context, Text *out, int indent)
+{
+    const Generation *g = context;
+    if (g->style->exponential)
+        line(out, indent, "gic_real exponential[GIC_EXPONENTIAL(%s_STATE_ROOM)];", g->upper);
 }
 
 int implicit_unknowns(const Generation *g, int **unknown, int **position)

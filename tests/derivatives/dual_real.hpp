@@ -12,6 +12,7 @@ struct Differential {
     constexpr Differential(double value) : v(value), d(0) {}
     constexpr Differential(double value, double slope) : v(value), d(slope) {}
     explicit operator int() const { return (int)v; }
+    explicit operator float() const { return (float)v; }
     Differential &operator+=(Differential b) { return v += b.v, d += b.d, *this; }
     Differential &operator-=(Differential b) { return v -= b.v, d -= b.d, *this; }
     Differential &operator*=(Differential b) { return d = d * b.v + v * b.d, v *= b.v, *this; }
