@@ -1902,7 +1902,7 @@ static int plain_step(const gic_model *model, void *self, gic_real step, int32_t
     int status = check_step(model, self, step, step);
     if (status != GIC_OK)
         return status;
-    if (!is_method(model, method) || !takes_options(head, 1) || (method > GIC_RK4 && head->most > 0))
+    if (!is_method(model, method) || !takes_options(head, 1))
         return head->status = GIC_ERROR_ARGUMENT;
 
     const int32_t n = model->slow_count + model->fast_count;

@@ -394,11 +394,11 @@ typedef struct gic_derivatives {
 /* The most contacts that head.locate looks at. */
 #define GIC_CONTACTS 64
 
-/* One step of `step` seconds with AB3 or RK4, or where the model has gic_model.implicit with ROS2 or ROS3, which is not
- * for head.most (models/STIFF.md). AB3 starts with two steps of RK4, which keeps its order. With head.locate a step in
- * which contacts change, or with 2 a load bends, is made again in parts, and AB3 starts again after it. On GIC_OK
- * state, time and, where there is an input function, input[] have moved by one step; otherwise they are untouched. A
- * new step size or method restarts the history. */
+/* One step of `step` seconds with AB3 or RK4, or where the model has gic_model.implicit with one of the methods that
+ * need it (models/STIFF.md). AB3 starts with two steps of RK4, which keeps its order. With head.locate a step in which
+ * contacts change, or with 2 a load bends, is made again in parts, and AB3 starts again after it. On GIC_OK state, time
+ * and, where there is an input function, input[] have moved by one step; otherwise they are untouched. A new step size
+ * or method restarts the history. */
 #define gic_step GIC_NAME(gic_step)
 int gic_step(const gic_model *model, void *self, gic_real step, int32_t method);
 

@@ -149,7 +149,6 @@ const Scene *scene_choose_step(Pool *pool, const Model *model, const Scene *scen
 {
     if (!scene->automatic)
         return scene;
-    implicit = implicit && !scene->most_work; /* their events have no bound yet */
     Scene *ahead = pool_alloc(pool, sizeof *ahead), *chosen = pool_alloc(pool, sizeof *chosen);
     *ahead = *scene;
     ahead->automatic = false;

@@ -587,11 +587,6 @@ static void read_most_work(Scene *scene, const Item *most, bool replaced)
 {
     if (!most || (replaced && scene->method >= METHOD_ADAMS))
         return;
-    if (scene_implicit(scene) && replaced)
-        return;
-    if (scene_implicit(scene))
-        diag_fail(most->at, "leave it out, or write `integrator: ab3` or `rk4`",
-                  "implicit steps (%s) do not bound the work of events yet", integrator_name(scene->method));
     const int least = GIC_LEAST_MOST(scene->method == GIC_AB3 ? scene->ratio : 1);
     if (scene->method >= METHOD_ADAMS)
         diag_fail(most->at, "leave it out, or take constant steps", "variable steps take as much work as they need");

@@ -361,8 +361,6 @@ scene 1 0.01 'integrator: ros3' 'ratio: 4' >bad.scene
 refused 'ros3 has one rate for everything' 'integrator: ab3' "$models/hmmwv_tires.veh" bad.scene -o none.csv
 scene 1 0.01 'integrator: imex' 'ratio: 4' >bad.scene
 refused 'imex has one rate for everything' 'integrator: ab3' "$models/hmmwv_tires.veh" bad.scene -o none.csv
-scene 1 0.01 'integrator: ros2' 'most_work: 100' >bad.scene
-refused 'implicit steps (ros2) do not bound the work' 'leave it out' "$models/hmmwv_tires.veh" bad.scene -o none.csv
 scene 1 0.01 'integrator: ab3' 'keep_jacobian: 4' >bad.scene
 refused 'ab3 needs no Jacobian' 'ros2' "$models/pendulum.veh" bad.scene -o none.csv
 scene 1 0.01 'integrator: ros2' 'keep_jacobian: 0' >bad.scene
