@@ -21,21 +21,24 @@
 #include <string.h>
 
 enum {
-    LONGEST = 32,     /* steps of a bounce that is judged; methods resolve longer ones */
-    SHORT = 6,        /* steps of a bounce that is judged even if it gives back less than it got */
-    LAG_AB3 = 4,      /* looks at a free body until AB3 has no place in its past that has a speed from the contact */
-    LAG_IMEX = 6,     /* and until imex has 0.1 % of its past left */
-    FREE = 3,         /* looks at a free body from which its speed and acceleration follow */
-    LAGGING = 20,     /* steps in which AB3 and imex resolve a bounce to 1 percent, */
-    RESOLVED = 12,    /* and other methods */
-    FINE = 64,        /* small steps in a bounce, at least: RK4 leaves less than 1e-3 of the energy */
-    MORE = 3,         /* steps after which a body is free in small steps too, or bounces otherwise */
-    SUSPECTS = 4,     /* that are explained */
-    REST = 64,        /* steps without a look, at most */
-    LOOKS = 4000,     /* that are always allowed, */
-    LOOKS_SHARE = 20, /* and one in so many right-hand sides, of which a look costs a fifth */
-    BURST = 64,       /* looks that must be allowed before they go on */
-    REPLAYS = 4000,   /* right-hand sides of small steps that are always allowed, */
+    LONGEST = 32,  /* steps of a bounce that is judged; methods resolve longer ones */
+    SHORT = 6,     /* steps of a bounce that is judged even if it gives back less than it got */
+    LAG_AB3 = 4,   /* looks at a free body until AB3 has no place in its past that has a speed from the contact */
+    LAG_IMEX = 6,  /* and until imex has 0.1 % of its past left */
+    FREE = 3,      /* looks at a free body from which its speed and acceleration follow */
+    LAGGING = 20,  /* steps in which AB3 and imex resolve a bounce to 1 percent, */
+    RESOLVED = 12, /* and other methods */
+    FINE = 64,     /* small steps in a bounce, at least: RK4 leaves less than 1e-3 of the energy */
+    CLEAR = 8,     /* small steps with a load, at least, else a bounce is made again in steps of a CLEARER-th; */
+    CLEARER = 8,
+    CLEARING = 3000000,     /* right-hand sides that this may take, by the number of states */
+    MORE = 3,               /* steps after which a body is free in small steps too, or bounces otherwise */
+    SUSPECTS = 4,           /* that are explained */
+    REST = 64,              /* steps without a look, at most */
+    LOOKS = 4000,           /* that are always allowed, */
+    LOOKS_SHARE = 20,       /* and one in so many right-hand sides, of which a look costs a fifth */
+    BURST = 64,             /* looks that must be allowed before they go on */
+    REPLAYS = 4000,         /* right-hand sides of small steps that are always allowed, */
     REPLAYS_SMALL = 200000, /* more by the number of states, */
     REPLAYS_SHARE = 100,    /* and one in so many of the run's */
 };
@@ -81,10 +84,12 @@ struct BounceWatch {
     StepTheory *theory;
     const Engine *engine;
     const Scene *scene;
-    gic_head *eye; /* the instance for looks and small steps */
+    gic_head *eye;  /* the instance for looks and small steps */
+    gic_head *home; /* as it was at the first look */
     int count, states;
     int lag, lag_least;           /* looks at a free body before gaps, and speeds, are those of free motion */
     int64_t replays_free;         /* right-hand sides of small steps that are always allowed */
+    int64_t clearing;             /* that are left for bounces much shorter than small steps */
     int64_t wait, looks, replays; /* steps before the next look; looks so far; right-hand sides of small steps so far */
     int64_t work;                 /* right-hand sides of the run so far */
     int known;                    /* looks that `press` has */
@@ -129,6 +134,7 @@ BounceWatch *bounce_watch_new(Pool *pool, StepTheory *theory, const Scene *scene
                                         : scene->method == GIC_IMEX ? LAG_IMEX
                                                                     : 0,
                            .replays_free = REPLAYS + REPLAYS_SMALL / (code->slow_count + code->fast_count + 1),
+                           .clearing = CLEARING / (code->slow_count + code->fast_count + 1),
                            .states = code->slow_count + code->fast_count,
                            .now = snapshot_new(pool, code),
                            .spare = snapshot_new(pool, code),
@@ -138,6 +144,7 @@ BounceWatch *bounce_watch_new(Pool *pool, StepTheory *theory, const Scene *scene
                            .name = code->contacts->name,
                            .bounce = {.contact = -1}};
     watch->eye = instance_new(pool, engine);
+    watch->home = instance_new(pool, engine);
     for (int k = 0; k < FREE; ++k)
         watch->press[k] = numbers(pool, watch->count);
     watch->sum = numbers(pool, watch->count);
@@ -237,20 +244,22 @@ static int small_step(const BounceWatch *watch, const gic_model *code, double st
     return status;
 }
 
-/* From the start of the bounce over `steps` of the run's, and on until the body is free; where it bounces again before,
- * back to where it was free last. *flight: there; *lasts: s with a load. False: it is never free
- * after the contact, or a step fails. */
-static bool replay(BounceWatch *watch, const gic_model *code, int steps, Flight *flight, double *lasts)
+/* From the start of the bounce over `steps` of the run's, in `parts` parts each, and on until the body is free; where
+ * it bounces again before, back to where it was free last. *flight: there; *lasts: s with a load. False: it is never
+ * free after the contact, or a step fails. */
+static bool replay_in(BounceWatch *watch, const gic_model *code, int steps, int parts, Flight *flight, double *lasts)
 {
-    const Scene *scene = watch->scene;
-    const Bounce *bounce = &watch->bounce;
-    const int least = (FINE + bounce->loaded) / (bounce->loaded + 1);
-    const int parts = least > scene->ratio ? least : scene->ratio, last = steps * parts;
-    const double step = scene->step / parts;
+    const int last = steps * parts;
+    const double step = watch->scene->step / parts;
     double most = 0, number = 1;
     bool free = false;
     put(watch, code, &watch->start);
     *lasts = 0;
+    double press[watch->count];
+    if (eye_press(watch, code, press) != GIC_OK) { /* what it knows of poses is too far from here */
+        memcpy(watch->eye, watch->home, code->size);
+        put(watch, code, &watch->start);
+    }
     for (int k = 0; k < last || (number > 0 && k < last + MORE * parts); ++k) {
         if (small_step(watch, code, step, &number) != GIC_OK)
             return false;
@@ -270,6 +279,35 @@ static bool replay(BounceWatch *watch, const gic_model *code, int steps, Flight 
     if (number > 0 && !free)
         return false;
     return eye_flight(watch, code, flight) == GIC_OK;
+}
+
+/* Is a bounce in small steps what it is in steps of a CLEARER-th, up to a tenth of its energy, and long enough for
+ * them?
+ */
+static bool is_clear(const Flight *coarse, const Flight *fine, double loaded)
+{
+    const double a = energy_of(coarse, coarse->acceleration), b = energy_of(fine, fine->acceleration);
+    return loaded >= CLEAR && fabs(a - b) <= 0.1 * fabs(b);
+}
+
+/* The same in small steps; where the run's body has more energy than it came with, `gained`, in smaller and smaller
+ * ones until that changes nothing. */
+static bool replay(BounceWatch *watch, const gic_model *code, int steps, bool gained, Flight *flight, double *lasts)
+{
+    const Scene *scene = watch->scene;
+    const int least = (FINE + watch->bounce.loaded) / (watch->bounce.loaded + 1);
+    int parts = least > scene->ratio ? least : scene->ratio;
+    bool known = replay_in(watch, code, steps, parts, flight, lasts), clear = !gained;
+    while (!clear && (int64_t)(steps + MORE) * parts * CLEARER * 4 <= watch->clearing) {
+        const int64_t before = watch->eye->rhs_count;
+        const Flight coarse = *flight;
+        const bool comparable = known;
+        parts *= CLEARER;
+        known = replay_in(watch, code, steps, parts, flight, lasts);
+        watch->clearing -= watch->eye->rhs_count - before;
+        clear = comparable && known && is_clear(&coarse, flight, *lasts / scene->step * parts);
+    }
+    return known;
 }
 
 /* The bounce makes its contact bounce too high. */
@@ -318,8 +356,11 @@ static void judge_bounce(BounceWatch *watch, const gic_model *code, const Snapsh
     Flight now, right;
     double lasts;
     put(watch, code, at);
-    const bool known = eye_flight(watch, code, &now) == GIC_OK && replay(watch, code, steps, &right, &lasts);
-    watch->replays += watch->eye->rhs_count - before;
+    bool known = eye_flight(watch, code, &now) == GIC_OK;
+    const Flight came = {bounce->gap, bounce->speed, 0};
+    const bool gained = known && energy_of(&now, now.acceleration) > runaway * energy_of(&came, now.acceleration);
+    known = known && replay(watch, code, steps, gained, &right, &lasts);
+    watch->replays += gained ? 0 : watch->eye->rhs_count - before;
     if (!known)
         return;
     const double least = isnan(bounce->speed) ? 0 : rebound_least * bounce->speed * bounce->speed;
@@ -351,13 +392,14 @@ static int look(BounceWatch *watch, const gic_model *code)
     return eye_press(watch, code, oldest);
 }
 
-/* Does the gap of a contact close within the step before the last look, though both its ends are free? RK4 may have
- * met the element between them. */
+/* Does the gap of a contact close within the step before the last look, though both its ends are free? Stages may have
+ * met the element between them; so they may where a body that was near has turned round. */
 static bool may_have_touched(const BounceWatch *watch, int i)
 {
     const double now = watch->press[0][i], before = watch->press[1][i], first = watch->press[2][i];
     const double speed = (before - first) / (watch->at[1] - watch->at[2]);
-    return watch->known == FREE && now <= 0 && before < 0 && first < before && before + speed * watch->scene->step > 0;
+    const double ahead = speed * watch->scene->step * (now < before ? safety : 1);
+    return watch->known == FREE && now <= 0 && before < 0 && first < before && before + ahead > 0;
 }
 
 /* A contact that the last look sees first begins a bounce; so does one that has a load at the first look of all. */
@@ -450,6 +492,7 @@ void bounce_watch_step(BounceWatch *watch, const gic_model *code, const gic_head
         memcpy(watch->eye, self, code->size);
         watch->eye->locate = 0;
         watch->eye->most = 0;
+        memcpy(watch->home, watch->eye, code->size);
     }
     const Snapshot before = watch->now;
     watch->now = watch->spare;
