@@ -705,10 +705,11 @@ typedef float gic_brief_rows ROWS_OF(float);
 #define SOON(place) (void)0
 #endif
 
-/* sum[GIC_PANEL] = the rows of a panel, times x[n]. Every fourth column is added up by itself, since sums wait for one
- * another; the bits don't depend on the length of vectors. */
-#define PANEL_TIMES(name, number, rows) \
-    static void name(int32_t n, const number *panel, const number *x, number *sum) \
+/* Of matrices of one kind of number: KIND_times(), sum[GIC_PANEL] = the rows of a panel, times x[n], and KIND_add(),
+ * y += matrix x. Every fourth column is added up by itself, since sums wait for one another; the bits don't depend on
+ * the length of vectors. */
+#define PANELS(kind, number, rows) \
+    static void kind##_times(int32_t n, const number *panel, const number *x, number *sum) \
     { \
         for (uint32_t row = 0; row < GIC_PANEL; row += sizeof(rows) / sizeof(number)) { \
             const number *at = panel + row; \
@@ -726,31 +727,18 @@ typedef float gic_brief_rows ROWS_OF(float);
                 part += *(const rows *)(const void *)at * x[k]; \
             *(rows *)(void *)(sum + row) = (part + third) + (second + fourth); \
         } \
+    } \
+    static void kind##_add(int32_t n, const number *matrix, const number *x, gic_real *y) \
+    { \
+        number sum[GIC_PANEL]; \
+        for (int32_t first = 0; first < n; first += GIC_PANEL) { \
+            kind##_times(n, matrix + first * n, x, sum); \
+            for (int32_t l = 0; l < GIC_PANEL && first + l < n; ++l) \
+                y[first + l] += (gic_real)sum[l]; \
+        } \
     }
-PANEL_TIMES(panel_times, gic_real, gic_rows)
-PANEL_TIMES(brief_times, gic_brief, gic_brief_rows)
-
-/* y += matrix x */
-static void panels_add(int32_t n, const gic_real *matrix, const gic_real *x, gic_real *y)
-{
-    gic_real sum[GIC_PANEL];
-    for (int32_t first = 0; first < n; first += GIC_PANEL) {
-        panel_times(n, matrix + first * n, x, sum);
-        for (int32_t l = 0; l < GIC_PANEL && first + l < n; ++l)
-            y[first + l] += sum[l];
-    }
-}
-
-/* The same of floats. */
-static void brief_add(int32_t n, const gic_brief *matrix, const gic_brief *x, gic_real *y)
-{
-    gic_brief sum[GIC_PANEL];
-    for (int32_t first = 0; first < n; first += GIC_PANEL) {
-        brief_times(n, matrix + first * n, x, sum);
-        for (int32_t l = 0; l < GIC_PANEL && first + l < n; ++l)
-            y[first + l] += (gic_real)sum[l];
-    }
-}
+PANELS(panels, gic_real, gic_rows)
+PANELS(brief, gic_brief, gic_brief_rows)
 
 /* to = a b; column: work space for n numbers */
 static void panels_product(int32_t n, const gic_real *a, const gic_real *b, gic_real *column, gic_real *to)
@@ -759,7 +747,7 @@ static void panels_product(int32_t n, const gic_real *a, const gic_real *b, gic_
         for (int32_t k = 0; k < n; ++k)
             column[k] = b[GIC_PANEL * j + panel_row(n, k)];
         for (int32_t first = 0; first < n; first += GIC_PANEL)
-            panel_times(n, a + first * n, column, to + first * n + GIC_PANEL * j);
+            panels_times(n, a + first * n, column, to + first * n + GIC_PANEL * j);
     }
 }
 

@@ -31,7 +31,7 @@ enum {
     FINE = 64,     /* small steps in a bounce, at least: RK4 leaves less than 1e-3 of the energy */
     CLEAR = 8,     /* small steps with a load, at least, else a bounce is made again in steps of a CLEARER-th; */
     CLEARER = 8,
-    CLEARING = 3000000,     /* right-hand sides that this may take, by the number of states */
+    CLEARING = 3000000,     /* right-hand sides that this may take in a run, by the number of states */
     MORE = 3,               /* steps after which a body is free in small steps too, or bounces otherwise */
     SUSPECTS = 4,           /* that are explained */
     REST = 64,              /* steps without a look, at most */
@@ -297,12 +297,14 @@ static bool replay(BounceWatch *watch, const gic_model *code, int steps, bool ga
     const Scene *scene = watch->scene;
     const int least = (FINE + watch->bounce.loaded) / (watch->bounce.loaded + 1);
     int parts = least > scene->ratio ? least : scene->ratio;
+    int64_t before = watch->eye->rhs_count;
     bool known = replay_in(watch, code, steps, parts, flight, lasts), clear = !gained;
+    watch->replays += watch->eye->rhs_count - before;
     while (!clear && (int64_t)(steps + MORE) * parts * CLEARER * 4 <= watch->clearing) {
-        const int64_t before = watch->eye->rhs_count;
         const Flight coarse = *flight;
         const bool comparable = known;
         parts *= CLEARER;
+        before = watch->eye->rhs_count;
         known = replay_in(watch, code, steps, parts, flight, lasts);
         watch->clearing -= watch->eye->rhs_count - before;
         clear = comparable && known && is_clear(&coarse, flight, *lasts / scene->step * parts);
@@ -352,7 +354,6 @@ static void judge_bounce(BounceWatch *watch, const gic_model *code, const Snapsh
     const Bounce *bounce = &watch->bounce;
     if (gives_back_less(watch) || watch->replays > watch->replays_free + watch->work / REPLAYS_SHARE)
         return;
-    const int64_t before = watch->eye->rhs_count;
     Flight now, right;
     double lasts;
     put(watch, code, at);
@@ -360,7 +361,6 @@ static void judge_bounce(BounceWatch *watch, const gic_model *code, const Snapsh
     const Flight came = {bounce->gap, bounce->speed, 0};
     const bool gained = known && energy_of(&now, now.acceleration) > runaway * energy_of(&came, now.acceleration);
     known = known && replay(watch, code, steps, gained, &right, &lasts);
-    watch->replays += gained ? 0 : watch->eye->rhs_count - before;
     if (!known)
         return;
     const double least = isnan(bounce->speed) ? 0 : rebound_least * bounce->speed * bounce->speed;

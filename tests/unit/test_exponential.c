@@ -348,7 +348,7 @@ static void test_failures(void **unused)
     Probe probe = probe_new(&spiral, (const double[]){1, 0}, 0), before = probe;
     assert_int_equal(gic_step(&without, &probe, 0.25, GIC_EXP3), GIC_ERROR_ARGUMENT);
     assert_int_equal(gic_step(&model, &probe, -0.25, GIC_EXP3), GIC_ERROR_ARGUMENT);
-    probe.head.most = 100;
+    probe.head.most = GIC_LEAST_MOST(1) - 1;
     assert_int_equal(gic_step(&model, &probe, 0.25, GIC_EXP3), GIC_ERROR_ARGUMENT);
     assert_memory_equal(probe.state, before.state, sizeof probe.state);
     probe = probe_new(&spiral, (const double[]){1, 0}, 0);

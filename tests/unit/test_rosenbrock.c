@@ -425,7 +425,7 @@ static void test_failures(void **unused)
         assert_int_equal(probe.head.grown, 0);
         assert_same(&probe, &before);
         assert_int_equal(gic_step(&none_of_it, &probe, 1e-20, method), GIC_ERROR_ARGUMENT);
-        probe.head.most = 100;
+        probe.head.most = GIC_LEAST_MOST(1) - 1;
         assert_int_equal(gic_step(&model, &probe, 1e-20, method), GIC_ERROR_ARGUMENT);
         assert_same(&probe, &before);
         probe = probe_new(&lost, (const double[]){1}, 1);
