@@ -247,7 +247,9 @@ static void read_time(Reader *reader, const Item *root)
     const Item *duration = scene_need(root, "duration", "the scene"), *step = doc_find(root, "step");
     const Item *output = doc_find(root, "output_step");
     if (constant)
-        step = scene_need(root, "step", pool_print(reader->pool, "a scene with %s", integrator_name(scene->method)));
+        step = scene_need(
+            root, "step",
+            pool_print(reader->pool, "a scene with %s", scene->automatic ? "auto" : integrator_name(scene->method)));
     else if (!step)
         output = scene_need(root, "output_step", "a scene without step");
     scene->duration = scene_positive(duration, "duration");
