@@ -1882,6 +1882,20 @@ static int march(const gic_model *model, void *self, gic_real step)
     return 0;
 }
 
+/* After a step: what IMEX or EXP3 keep of it beside rates. from: the state at its start. */
+static void keep_change(const gic_model *model, void *self, int32_t method, gic_real step, const gic_real *from)
+{
+    if (method < GIC_IMEX)
+        return;
+    const Implicit w = implicit_of(model, self);
+    const gic_real *const state = array_at(self, model->state_offset);
+    gic_real *const last = method == GIC_EXP3 ? exponential_of(model, self).change : last_change(&w);
+    for (int32_t i = 0; i < w.n; ++i)
+        last[i] = state[i] - from[i];
+    if (method == GIC_EXP3 && step == w.head->span)
+        ++w.head->spent;
+}
+
 static int plain_step(const gic_model *model, void *self, gic_real step, int32_t method)
 {
     gic_head *head = (gic_head *)self;
@@ -1913,15 +1927,7 @@ static int plain_step(const gic_model *model, void *self, gic_real step, int32_t
         copy(history + n, history, n);
         copy(history, rate, n);
     }
-    if (method >= GIC_IMEX) {
-        const Implicit w = implicit_of(model, self);
-        const gic_real *const state = array_at(self, model->state_offset);
-        gic_real *const last = method == GIC_EXP3 ? exponential_of(model, self).change : last_change(&w);
-        for (int32_t i = 0; i < n && head->history > 0; ++i)
-            last[i] = state[i] - next[i]; /* the state at the start is in `next` */
-        if (method == GIC_EXP3 && step == w.head->span)
-            ++w.head->spent;
-    }
+    keep_change(model, self, method, step, next); /* the state at the start is in `next` */
     return GIC_OK;
 }
 
@@ -1933,7 +1939,7 @@ typedef struct Dual {
     void *self;
     gic_real start, step; /* time is start + steps * step, independent of the head's present count */
     int64_t steps;
-    int32_t ratio;
+    int32_t ratio, method;
     gic_real steady;   /* of gic_step_steady */
     gic_real *scratch; /* rows of a state: 0 the rate at the start, 1 and 2 states, 3 to 6 for the method */
     gic_real *link;    /* rows 0 to 2: at this slow step and the two before; 3 at the next; 4 at a fast step */
@@ -2007,7 +2013,22 @@ static int step_fast(const Dual *dual, int32_t k, gic_real *fast, gic_real *rate
     return gic_bounded(fast, model->fast_count) ? GIC_OK : GIC_ERROR_UNSTABLE;
 }
 
-/* A step without history: RK4 of everything at fast steps. After the second one row 3 has the rate at its end. */
+/* The method without history that makes parts of a step. */
+static int32_t part_method(int32_t method)
+{
+    return method == GIC_AB3 ? GIC_RK4 : method == GIC_IMEX ? GIC_ROS2 : method == GIC_EXP3 ? GIC_ROS3 : method;
+}
+
+/* The rate at the start of the step before, of all states, which IMEX and EXP3 need: a row of an instance that these
+ * two leave alone. */
+static gic_real *last_rate(const Dual *dual)
+{
+    const Implicit w = implicit_of(dual->model, dual->self);
+    return w.increment + (MOST_STAGES - 1) * w.n;
+}
+
+/* A step without history: fast steps of everything, by RK4 where the method is AB3. After the second one row 3 has the
+ * rate at its end. */
 static int start_dual(Dual *dual, int32_t known)
 {
     const gic_model *model = dual->model;
@@ -2016,8 +2037,8 @@ static int start_dual(Dual *dual, int32_t known)
     int status = known == 0 ? link_at(dual, 0, from, link + 4 * model->link_count) : GIC_OK;
     for (int32_t k = 0; k < dual->ratio && status == GIC_OK; ++k) {
         gic_real *rate = row(dual, k == 0 ? 0 : 5 + k % 2), *next = row(dual, 1 + k % 2);
-        status = advance(model, dual->self, moment(dual, k), dual->step / (gic_real)dual->ratio, GIC_RK4, from, NULL,
-                         rate, next, row(dual, 3), &dual->newest);
+        status = advance(model, dual->self, moment(dual, k), dual->step / (gic_real)dual->ratio,
+                         part_method(dual->method), from, NULL, rate, next, row(dual, 3), &dual->newest);
         dual->fast[1] = dual->fast[0];
         dual->fast[0] = rate + model->slow_count;
         from = next;
@@ -2082,23 +2103,39 @@ static int stay_on_course(Dual *dual, gic_real *fast, const gic_real *rate, gic_
     return gic_finite(fast, dual->model->fast_count) ? GIC_OK : GIC_ERROR_RESULT;
 }
 
-/* A step with history: one of AB3 for the slow states, then `ratio` of AB3 for the fast ones. */
-static int march_dual(Dual *dual)
+/* A step of the slow states, and where it is settled the links at its end. Of implicit and exponential methods it is
+ * one of all states, whose fast ones nobody uses but the slow ones within it. */
+static int step_slow(Dual *dual, gic_real *rate, gic_real *next)
 {
     const gic_model *model = dual->model;
     const int32_t slow = model->slow_count, n = slow + model->fast_count;
     const gic_real *state = array_at(dual->self, model->state_offset);
     const gic_real *history = array_at(dual->self, model->history_offset);
+    int status = GIC_OK;
+    if (dual->method == GIC_AB3) {
+        status = evaluate(model, dual->self, moment(dual, 0), state, rate);
+        if (status != GIC_OK)
+            return status;
+        dual->newest = rate;
+        adams_bashforth(slow, dual->step, state, rate, history, history + n, next);
+        copy(next + slow, state + slow, model->fast_count);
+        status = settle(model, dual->self, next);
+    } else {
+        status = advance(model, dual->self, moment(dual, 0), dual->step, dual->method, state,
+                         dual->method >= GIC_IMEX ? last_rate(dual) : NULL, rate, next, row(dual, 3), &dual->newest);
+        copy(next + slow, state + slow, model->fast_count);
+    }
+    return status == GIC_OK ? link_at(dual, dual->ratio, next, dual->link + 3 * model->link_count) : status;
+}
+
+/* A step with history: one of the slow states, then `ratio` of AB3 for the fast ones. */
+static int march_dual(Dual *dual)
+{
+    const gic_model *model = dual->model;
+    const int32_t slow = model->slow_count, n = slow + model->fast_count;
+    const gic_real *history = array_at(dual->self, model->history_offset);
     gic_real *rate = row(dual, 0), *next = row(dual, 1), *fast = next + slow;
-    int status = evaluate(model, dual->self, moment(dual, 0), state, rate);
-    if (status != GIC_OK)
-        return status;
-    dual->newest = rate;
-    adams_bashforth(slow, dual->step, state, rate, history, history + n, next);
-    copy(fast, state + slow, model->fast_count);
-    status = settle(model, dual->self, next);
-    if (status == GIC_OK)
-        status = link_at(dual, dual->ratio, next, dual->link + 3 * model->link_count);
+    int status = step_slow(dual, rate, next);
     if (status != GIC_OK)
         return status;
 
@@ -2136,7 +2173,7 @@ static void keep_dual(const Dual *dual, int32_t known)
     gic_real *history = array_at(dual->self, model->history_offset), *link = dual->link;
     copy(history + n, history, slow);
     copy(history, row(dual, 0), slow);
-    if (known == 1)
+    if (known == 1 && dual->method == GIC_AB3)
         balance_start(dual, history, history + n);
     copy(history + n + slow, dual->fast[1], fast);
     copy(history + slow, dual->fast[0], fast);
@@ -2149,20 +2186,21 @@ static void keep_dual(const Dual *dual, int32_t known)
     copy(link, link + 3 * links, links);
 }
 
-static int plain_steady(const gic_model *model, void *self, gic_real step, int32_t ratio, gic_real steady)
+static int plain_dual(const gic_model *model, void *self, gic_real step, int32_t method, int32_t ratio, gic_real steady)
 {
     if (ratio == 1 || (ratio > 1 && model->fast_count == 0))
-        return plain_step(model, self, step, GIC_AB3);
+        return plain_step(model, self, step, method);
     /* without a valid ratio there is no fast step to check */
     const int usable = ratio > 0 && ratio <= GIC_RATIOS;
     int status = check_step(model, self, step, usable ? step / (gic_real)ratio : GIC_R(0.0));
     if (status != GIC_OK)
         return status;
     gic_head *head = (gic_head *)self;
-    if (!gic_finite(&steady, 1) || steady < GIC_R(0.0) || !takes_options(head, ratio))
+    if (!is_method(model, method) || method == GIC_RK4 || !gic_finite(&steady, 1) || steady < GIC_R(0.0) ||
+        !takes_options(head, ratio))
         return head->status = GIC_ERROR_ARGUMENT;
 
-    const int same = goes_on(head, step, GIC_AB3, ratio);
+    const int same = goes_on(head, step, method, ratio);
     const int32_t known = same ? head->history : 0;
     gic_real *scratch = array_at(self, model->scratch_offset);
     gic_real *input_before = scratch + GIC_SCRATCH(model->slow_count + model->fast_count, 0);
@@ -2172,6 +2210,7 @@ static int plain_steady(const gic_model *model, void *self, gic_real step, int32
                  step,
                  same ? head->steps : 0,
                  ratio,
+                 method,
                  steady,
                  scratch,
                  array_at(self, model->link_offset),
@@ -2183,11 +2222,15 @@ static int plain_steady(const gic_model *model, void *self, gic_real step, int32
     status = head->status = known == 2 ? march_dual(&dual) : start_dual(&dual, known);
     if (status != GIC_OK)
         return give_up(model, self, step, status, dual.newest, input_before);
-    status = move_on(model, self, step, GIC_AB3, ratio, known < 2 ? known + 1 : 2, dual.next, row(&dual, 0), known < 2);
+    status = move_on(model, self, step, method, ratio, known < 2 ? known + 1 : 2, dual.next, row(&dual, 0), known < 2);
     if (status != GIC_OK)
         return give_up(model, self, step, status, row(&dual, 0), input_before);
-    if (head->history > 0)
+    if (head->history > 0) {
         keep_dual(&dual, known);
+        keep_change(model, self, method, step, dual.next);
+        if (method >= GIC_IMEX)
+            copy(last_rate(&dual), row(&dual, 0), model->slow_count + model->fast_count);
+    }
     return GIC_OK;
 }
 
@@ -2390,11 +2433,9 @@ static int part_to(const gic_model *model, void *self, gic_real end, gic_real fa
 {
     const gic_real length = end - gic_time(self);
     const int32_t parts = 1 + (int32_t)(GIC_R(0.999) * length / fast_step);
-    if (method == GIC_AB3 || method >= GIC_IMEX) /* one without history, for any length */
-        method = method == GIC_AB3 ? GIC_RK4 : method == GIC_IMEX ? GIC_ROS2 : GIC_ROS3;
     int status = GIC_OK;
     for (int32_t i = 0; i < parts && status == GIC_OK; ++i)
-        status = plain_step(model, self, length / (gic_real)parts, method);
+        status = plain_step(model, self, length / (gic_real)parts, part_method(method));
     if (status == GIC_OK) {
         gic_restart(self, end); /* the time as a product, not as a sum */
         set_inputs(model, self, end);
@@ -2439,8 +2480,7 @@ static int sampled_step(const gic_model *model, void *self, gic_real step, int32
         head->method = method;
         head->ratio = ratio;
     } else if (status == GIC_OK) {
-        status =
-            method == GIC_AB3 ? plain_steady(model, self, step, ratio, steady) : plain_step(model, self, step, method);
+        status = plain_dual(model, self, step, method, ratio, steady);
     }
     if (status != GIC_OK)
         whole_back(model, self, &whole);
@@ -2460,8 +2500,13 @@ int gic_step_dual(const gic_model *model, void *self, gic_real step, int32_t rat
 
 int gic_step_steady(const gic_model *model, void *self, gic_real step, int32_t ratio, gic_real steady)
 {
-    return model->controller_count > 0 ? sampled_step(model, self, step, GIC_AB3, ratio, steady)
-                                       : plain_steady(model, self, step, ratio, steady);
+    return gic_step_dual_by(model, self, step, GIC_AB3, ratio, steady);
+}
+
+int gic_step_dual_by(const gic_model *model, void *self, gic_real step, int32_t method, int32_t ratio, gic_real steady)
+{
+    return model->controller_count > 0 ? sampled_step(model, self, step, method, ratio, steady)
+                                       : plain_dual(model, self, step, method, ratio, steady);
 }
 
 const char *gic_event_name(const gic_model *model, const void *self)

@@ -419,6 +419,13 @@ int gic_step_dual(const gic_model *model, void *self, gic_real step, int32_t rat
 #define gic_step_steady GIC_NAME(gic_step_steady)
 int gic_step_steady(const gic_model *model, void *self, gic_real step, int32_t ratio, gic_real steady);
 
+/* As gic_step_steady, with the slow states by a method of gic_step other than RK4; with ratio 1 by any. Implicit and
+ * exponential methods step all states, by which slow and fast ones see each other, and the fast ones again by AB3 in
+ * `ratio` steps. Their first two steps are `ratio` each by ROS2 (ROS2, IMEX) or ROS3, each with a Jacobian of its own
+ * within the first. */
+#define gic_step_dual_by GIC_NAME(gic_step_dual_by)
+int gic_step_dual_by(const gic_model *model, void *self, gic_real step, int32_t method, int32_t ratio, gic_real steady);
+
 /* Sample the controllers whose time has come, and let values take effect: step functions do so at the beginning of a
  * step and within it; other integrators call it before a step, and end steps at *next, the time of the next sample or
  * effect (a large number: there is none). A held value that changes restarts the history, and head.held_count counts

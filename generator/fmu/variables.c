@@ -41,7 +41,7 @@ Experiment experiment_of(const Scene *scene)
     if (scene->method < METHOD_ADAMS) {
         experiment.step = scene->step;
         experiment.method = scene->method;
-        experiment.ratio = scene->method == GIC_AB3 ? scene->ratio : 1;
+        experiment.ratio = scene->ratio;
         experiment.keep = scene_implicit(scene) ? scene->keep : 1;
         experiment.spread = scene_implicit(scene) && scene->spread;
         experiment.steady = scene->steady;
@@ -403,8 +403,8 @@ static void add_solver(Making *m, bool implicit, bool shares)
     v = add_step_parameter(m, 1, "solver.method", NULL, "integrator of co-simulation");
     v->type = TYPE_METHOD;
     set_start(v, experiment.method + 1);
-    add_step_count(m, 2, "solver.ratio", "with AB3: steps of wheels and powertrain in a step of the bodies", GIC_RATIOS,
-                   experiment.ratio);
+    add_step_count(m, 2, "solver.ratio", "steps of wheels and powertrain in a step of the bodies; with RK4 1",
+                   GIC_RATIOS, experiment.ratio);
     if (implicit)
         add_step_count(m, 3, "solver.keep_jacobian", "with implicit methods: steps with one Jacobian", KEEP_MOST,
                        experiment.keep);

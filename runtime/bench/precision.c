@@ -166,10 +166,14 @@ static void add_all(Study *study)
         return;
     const int32_t keep = study->scene->keep;
     for (int32_t method = GIC_ROS2; method <= GIC_EXP3; ++method) {
+        const bool keeps = keep > 1 && method != GIC_EXP3; /* which makes all steps with the first Jacobian */
+        const char *kept = keeps ? pool_print(study->bench->pool, ", a Jacobian for %d steps", keep) : "";
         add_parts(study, integrator_name(method), "", IMPLICIT, method, (Ride){.ratio = 1});
-        if (keep > 1 && method != GIC_EXP3) /* it makes all steps with the first one */
-            add_parts(study, integrator_name(method), pool_print(study->bench->pool, ", a Jacobian for %d steps", keep),
-                      IMPLICIT, method, (Ride){.ratio = 1, .keep = keep});
+        if (keeps)
+            add_parts(study, integrator_name(method), kept, IMPLICIT, method, (Ride){.ratio = 1, .keep = keep});
+        if (ratio > 1 && study->engine->code->fast_count)
+            add_parts(study, integrator_name(method), pool_print(study->bench->pool, "%s, dual rate 1:%d", kept, ratio),
+                      IMPLICIT, method, (Ride){.ratio = ratio, .keep = keeps ? keep : 0});
     }
     if (study->exact)
         add_variable(study, "bdf", IMPLICIT, METHOD_BDF);

@@ -171,8 +171,8 @@ GICL_API int gicl_view(gicl_library *library, gicl_handle instance, int kind, do
 /* Forget the integrator's history; the time becomes `time`, s. */
 GICL_API int gicl_restart(gicl_library *library, gicl_handle instance, double time, gicl_messages *said);
 GICL_API int gicl_time(gicl_library *library, gicl_handle instance, double *time, gicl_messages *said);
-/* `steps` steps of `step` seconds with constant inputs; ratio: of AB3, fast steps of wheels and powertrain in a step,
- * 1: one. Ends at the first that fails. */
+/* `steps` steps of `step` seconds with constant inputs; ratio: fast steps of wheels and powertrain in a step, with RK4
+ * 1. Ends at the first that fails. */
 GICL_API int gicl_step(gicl_library *library, gicl_handle instance, double step, int method, int ratio, int64_t steps,
                        gicl_messages *said);
 /* The rate of a state at a time, with the instance's inputs; both [count], the number of states. The instance's own

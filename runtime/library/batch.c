@@ -53,7 +53,7 @@ int gicl_batch_step(gicl_library *library, gicl_handle batch, double step, int m
     const Vehicles *many = use.thing;
     if (steps < 0)
         return use_end(&use, call_wrong(said, NULL, "the number of steps is negative"));
-    const int lacking = vehicles_lack(many, method, said);
+    const int lacking = vehicles_lack(many, method, ratio, said);
     if (lacking != GICL_OK)
         return use_end(&use, lacking);
     int first = GIC_OK;

@@ -77,7 +77,7 @@ int gicl_step(gicl_library *library, gicl_handle instance, double step, int meth
     const Vehicles *one = use.thing;
     if (steps < 0)
         return use_end(&use, call_wrong(said, NULL, "the number of steps is negative"));
-    const int lacking = vehicles_lack(one, method, said);
+    const int lacking = vehicles_lack(one, method, ratio, said);
     if (lacking != GICL_OK)
         return use_end(&use, lacking);
     model_enter(one->model);

@@ -113,8 +113,9 @@ bool vehicles_view(const Vehicles *vehicles, int kind, double **data, int *count
 /* Bring a vehicle to the start, or leave it as it is. parameter: NULL: those of scene or model. `copy` then has what
  * happened. Returns a status. */
 int vehicle_start(const Vehicles *vehicles, int v, const double *parameter);
-/* GICL_WRONG, with a message, if the method has implicit steps and the code has none; else GICL_OK. */
-int vehicles_lack(const Vehicles *vehicles, int method, gicl_messages *said);
+/* GICL_WRONG, with a message, if the method has implicit steps and the code has none, or none with this ratio in lanes;
+ * else GICL_OK. */
+int vehicles_lack(const Vehicles *vehicles, int method, int ratio, gicl_messages *said);
 /* Steps by gic_step() or gic_step_dual(), up to the first that fails. Returns a status. */
 int vehicle_step(const Vehicles *vehicles, int v, double step, int method, int ratio, int64_t steps);
 /* Outputs of the present state, by `copy`, which then has what happened. Returns a status. */

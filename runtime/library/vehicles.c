@@ -204,9 +204,12 @@ int vehicle_start(const Vehicles *vehicles, int v, const double *parameter)
     return status;
 }
 
-int vehicles_lack(const Vehicles *vehicles, int method, gicl_messages *said)
+int vehicles_lack(const Vehicles *vehicles, int method, int ratio, gicl_messages *said)
 {
     const gic_implicit *implicit = vehicles->code->implicit;
+    if (vehicles->many && ratio > 1 && method_implicit(method))
+        return call_wrong(said, "take a ratio of 1, or a batch without lanes",
+                          "vehicles in lanes take fast steps with ab3 alone");
     if (!method_implicit(method) || (implicit && (method != GIC_EXP3 || implicit->exponential_offset > 0)))
         return GICL_OK;
     return call_wrong(said, "open the model with it as integrator, by an engine of generated code",
@@ -217,11 +220,8 @@ int vehicle_step(const Vehicles *vehicles, int v, double step, int method, int r
 {
     gic_head *self = vehicle_of(vehicles, v);
     int status = GIC_OK;
-    if (ratio != 1 && method != GIC_AB3)
-        return GIC_ERROR_ARGUMENT;
     for (int64_t i = 0; i < steps && status == GIC_OK; ++i)
-        status = ratio == 1 ? gic_step(vehicles->code, self, step, method)
-                            : gic_step_dual(vehicles->code, self, step, ratio);
+        status = gic_step_dual_by(vehicles->code, self, step, method, ratio, 0);
     return status;
 }
 

@@ -193,13 +193,12 @@ typedef struct StepLimit {
 } StepLimit;
 
 extern const double mode_accuracy; /* of |eigenvalue| */
-/* ratio: fast steps in a step, 1 but for AB3; a mode of fast states and a `ratio` are taken to move apart from others.
- */
+/* ratio: fast steps of AB3 in a step; a mode of fast states and a `ratio` are taken to move apart from others. */
 StepLimit modes_step(const Linear *linear, const Modes *modes, int32_t method, int32_t ratio);
 /* Column k of a table of steps for single modes, s, as modes_column() and modes_value(). */
 const char *mode_steps_column(int k);
 double mode_steps_value(const Mode *mode, int k);
-/* A table of modes_step() for people; ratio: that of AB3. */
-void modes_print_steps(Text *out, const Linear *linear, const Modes *modes, int32_t ratio);
+/* A table of modes_step() for people, with the ratio of a scene, or NULL. */
+void modes_print_steps(Text *out, const Linear *linear, const Modes *modes, const Scene *scene);
 
 #endif

@@ -23,9 +23,11 @@ StepLimit modes_step(const Linear *linear, const Modes *modes, int32_t method, i
     StepLimit limit = {.stable = INFINITY, .accurate = INFINITY};
     for (int k = 0; k < modes->count; ++k) {
         const Mode *mode = &modes->mode[k];
-        const double parts = ratio > 1 && mode_is_fast(linear, mode) ? ratio : 1;
-        const double stable = parts * step_stable(method, mode->real, mode->imaginary);
-        const double accurate = parts * step_accurate(method, mode->real, mode->imaginary, mode_accuracy);
+        const bool fast = ratio > 1 && mode_is_fast(linear, mode);
+        const double parts = fast ? ratio : 1;
+        const int32_t by = fast ? GIC_AB3 : method;
+        const double stable = parts * step_stable(by, mode->real, mode->imaginary);
+        const double accurate = parts * step_accurate(by, mode->real, mode->imaginary, mode_accuracy);
         if (stable < limit.stable) {
             limit.stable = stable;
             limit.limits = mode;
@@ -67,12 +69,13 @@ static void print_step(Text *out, double step)
         text_print(out, "  %14s", "any");
 }
 
-void modes_print_steps(Text *out, const Linear *linear, const Modes *modes, int32_t ratio)
+void modes_print_steps(Text *out, const Linear *linear, const Modes *modes, const Scene *scene)
 {
     text_print(out, "\n%-16s  %14s  %14s  %s\n", "constant steps", "stable up to", "1 % up to",
                "stability is limited by");
     for (int32_t method = GIC_AB3; method <= GIC_IMEX; ++method) {
-        const int32_t parts = method == GIC_AB3 ? ratio : 1;
+        const bool dual = scene && (method == GIC_AB3 || (method > GIC_RK4 && scene_implicit(scene)));
+        const int32_t parts = dual ? scene->ratio : 1;
         const StepLimit limit = modes_step(linear, modes, method, parts);
         Text name = {.pool = out->pool};
         text_print(&name, parts > 1 ? "%s, ratio %d" : "%s", integrator_name(method), parts);

@@ -579,6 +579,6 @@ void modes_report(Pool *pool, const Scene *scene, const Request *request, const 
     else
         text_print(&table, "%s: small motions about the static equilibrium\n", found->model->name);
     print_table(&table, linear, modes);
-    modes_print_steps(&table, linear, modes, scene ? scene->ratio : 1);
+    modes_print_steps(&table, linear, modes, scene);
     diag_text(table.s);
 }

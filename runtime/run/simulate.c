@@ -522,8 +522,7 @@ static int constant_step(const Step *step, gic_head *self)
     const Scene *scene = step->scene;
     const double start = gic_time(self);
     const int history = self->history;
-    const int status = scene->method == GIC_AB3 ? gic_step_steady(model, self, scene->step, scene->ratio, scene->steady)
-                                                : gic_step(model, self, scene->step, scene->method);
+    const int status = gic_step_dual_by(model, self, scene->step, scene->method, scene->ratio, scene->steady);
     return status == GIC_OK ? knots_cross(model, scene, self, start, history) : status;
 }
 

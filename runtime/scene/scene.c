@@ -204,10 +204,14 @@ static void read_ratio(Reader *reader, const Item *item, bool replaced)
     if (!(ratio >= 1 && ratio <= most && ratio == floor(ratio)))
         diag_fail(item->at, "write how many fast steps make a step, for example 6",
                   "ratio must be a whole number from 1 to %g", most);
-    if (reader->scene->method != GIC_AB3 && !replaced)
+    const int32_t method = reader->scene->method;
+    if (method != GIC_AB3 && !method_implicit(method) && !replaced)
         diag_fail(item->at, "remove it, or write `integrator: ab3`", "%s has one rate for everything",
-                  integrator_name(reader->scene->method));
-    reader->scene->ratio = (int32_t)ratio;
+                  integrator_name(method));
+    /* what is meant for explicit steps is not for implicit ones in their place */
+    const Item *own = doc_find(reader->scene->root, "integrator");
+    if (method == GIC_AB3 || (method_implicit(method) && own && method_implicit(integrator_method(own->text))))
+        reader->scene->ratio = (int32_t)ratio;
 }
 
 static void read_keep(Reader *reader, const Item *item, bool replaced)
@@ -589,7 +593,7 @@ static void read_most_work(Scene *scene, const Item *most, bool replaced)
 {
     if (!most || (replaced && scene->method >= METHOD_ADAMS))
         return;
-    const int least = GIC_LEAST_MOST(scene->method == GIC_AB3 ? scene->ratio : 1);
+    const int least = GIC_LEAST_MOST(scene->ratio);
     if (scene->method >= METHOD_ADAMS)
         diag_fail(most->at, "leave it out, or take constant steps", "variable steps take as much work as they need");
     const double number = doc_number(most, "most_work"), largest = 1e6;

@@ -51,7 +51,7 @@ typedef struct Scene {
     int32_t method;                     /* gic_method, or one of run/variable_step.h */
     bool automatic;                     /* method and step are to be chosen: run/choose_step.h */
     double tolerance;                   /* of variable steps */
-    int32_t ratio;                      /* of AB3: fast steps in a step */
+    int32_t ratio;                      /* fast steps in a step; 1: one rate for everything */
     double steady;                      /* of gic_step_steady; 0: always fast steps */
     int most_work;                      /* gic_head.most; 0: no bound */
     int32_t keep;                       /* of implicit steps: steps with one Jacobian */

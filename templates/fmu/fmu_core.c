@@ -598,9 +598,8 @@ const char *fmu_no_exchange(void)
 
 static int one_step(fmu_data *data, gic_real step)
 {
-    if (data->method == GIC_AB3 + 1)
-        return gic_step_steady(model, &data->self, step, data->ratio, FMU_STEADY);
-    return gic_step(model, &data->self, step, data->method - 1);
+    return gic_step_dual_by(model, &data->self, step, data->method - 1, data->method == GIC_RK4 + 1 ? 1 : data->ratio,
+                            FMU_STEADY);
 }
 
 fmu_result fmu_do_step(fmu_instance *instance, double point, double length)

@@ -358,6 +358,23 @@ outputs: {turn: {type: coordinate, coordinate: turn}}
         self.assertTrue(numpy.array_equal(alone.states[:], lanes.states[:]))
         self.assertTrue(numpy.array_equal(alone.outputs[:], lanes.outputs[:]))
 
+    def test_implicit_ratio(self):
+        """Fast steps within implicit ones, one vehicle and a batch alike; not in lanes."""
+        model = gicgen.Model(TIRES, integrator="ros2")
+        car, batch, lanes = model.instance(COAST), model.batch(2, COAST), model.batch(2, COAST, lanes=2)
+        one = model.instance(COAST)
+        one.step(0.004, 50, "ros2")
+        car.step(0.004, 50, "ros2", ratio=4)
+        batch.step(0.004, 50, "ros2", ratio=4)
+        for vehicle in range(2):
+            self.assertTrue(numpy.array_equal(car.states[:], batch.states[:][vehicle]))
+        self.assertFalse(numpy.array_equal(car.states[:], one.states[:]))
+        short = model.instance(COAST)
+        short.step(0.0002, 1000, "rk4")
+        self.assertLess(numpy.abs(car.states[:] - short.states[:]).max(), 1e-4)  # order 2 at 4 ms of motions of some 10 rad/s
+        with self.assertRaisesRegex(gicgen.WrongCall, "fast steps with ab3 alone"):
+            lanes.step(0.004, 1, "ros2", ratio=4)
+
     def test_linear(self):
         linear, modes = self.model.linearize(), self.model.modes()
         self.assertEqual(linear.A.shape, (4, 4))

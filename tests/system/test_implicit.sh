@@ -357,10 +357,6 @@ refused() {
     { [ "$status" -ne 0 ] && says "$wanted" && says "$remedy" && [ ! -e none.csv ] && [ "$(grep -c error: err)" -le 1 ]; }
     verdict $? "refused: $wanted"
 }
-scene 1 0.01 'integrator: ros3' 'ratio: 4' >bad.scene
-refused 'ros3 has one rate for everything' 'integrator: ab3' "$models/hmmwv_tires.veh" bad.scene -o none.csv
-scene 1 0.01 'integrator: imex' 'ratio: 4' >bad.scene
-refused 'imex has one rate for everything' 'integrator: ab3' "$models/hmmwv_tires.veh" bad.scene -o none.csv
 scene 1 0.01 'integrator: ab3' 'keep_jacobian: 4' >bad.scene
 refused 'ab3 needs no Jacobian' 'ros2' "$models/pendulum.veh" bad.scene -o none.csv
 scene 1 0.01 'integrator: ros2' 'keep_jacobian: 0' >bad.scene
@@ -369,8 +365,6 @@ scene 1 0.01 'integrator: exp3' 'keep_jacobian: 1' >bad.scene
 refused 'exp3 has no new Jacobian for each step' 'write 2 or more' "$models/pendulum.veh" bad.scene -o none.csv
 scene 1 0.01 'integrator: exp3' 'keep_jacobian: 16' 'spread_jacobian: true' >bad.scene
 refused 'spread_jacobian is for implicit steps by these' 'imex' "$models/pendulum.veh" bad.scene -o none.csv
-scene 1 0.01 'integrator: exp3' 'ratio: 4' >bad.scene
-refused 'exp3 has one rate for everything' 'integrator: ab3' "$models/hmmwv_tires.veh" bad.scene -o none.csv
 scene 1 0.01 'integrator: ros3' >good.scene
 for engine in tape gic gcp1; do
     refused "the engine '$engine' does not take implicit steps (ros3) yet" 'rk4' --engine $engine "$models/pendulum.veh" good.scene -o none.csv

@@ -78,8 +78,8 @@ def _step(value):
 
 def _ratio(value, method):
     ratio = _count(value, "ratio", 1, 10000)  # GIC_RATIOS of gic_runtime.h
-    if ratio > 1 and method != "ab3":
-        raise ValueError(f"ratio: 1 is wanted with method {method!r}, not {value!r}: fast steps go with 'ab3'")
+    if ratio > 1 and method == "rk4":
+        raise ValueError(f"ratio: 1 is wanted with method {method!r}, not {value!r}, as it has one rate for everything")
     return ratio
 
 
@@ -370,9 +370,9 @@ class Instance:
         call("set_up", self._handle, values.ctypes.data, len(values))
 
     def step(self, step, steps=1, method="ab3", ratio=1):
-        """`steps` steps of `step` seconds, inputs constant; ratio: of ab3, fast steps of wheels and powertrain in each.
-        method: 'ab3' or 'rk4'; 'ros2', 'ros3', 'imex' or 'exp3' of a model that was opened with
-        it as integrator."""
+        """`steps` steps of `step` seconds, inputs constant; ratio: fast steps of wheels and powertrain in each, not of
+        'rk4'. method: 'ab3' or 'rk4'; 'ros2', 'ros3', 'imex' or 'exp3' of a model that was opened with it as
+        integrator."""
         call("step", self._handle, _step(step), _method(method), _ratio(ratio, method), _steps(steps))
 
     def rhs(self, time, states):
