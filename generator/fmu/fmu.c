@@ -33,9 +33,6 @@ static void check_scene(const Scene *scene)
             "write `integrator: ab3`, `rk4`, `ros2`, `ros3`, `imex` or `exp3` and a `step`; in model exchange the "
             "importer takes steps of its own",
             "co-simulation of an FMU has constant steps, not those of %s", integrator_name(scene->method));
-    if (scene->most_work)
-        diag_fail(scene_place(scene, "most_work"), "leave out `most_work`",
-                  "an FMU does not bound the work of its steps yet");
     if (scene->actions)
         diag_fail(scene_place(scene, doc_find(scene->root, "until") ? "until" : "when"),
                   "leave out `until` and `when`: the importer reads outputs, sets inputs and ends the run",

@@ -53,7 +53,7 @@ typedef struct Variables {
 typedef struct Experiment {
     double step, stop;               /* s */
     int method, ratio, keep, spread; /* method: gic_method; of implicit ones: steps with one Jacobian; 1: by shares */
-    int locate;                      /* gic_head.locate */
+    int locate, most_work;           /* gic_head.locate, .most */
     double steady;
 } Experiment;
 

@@ -53,14 +53,15 @@ static void write_enumerators(void *context, Text *out, int indent)
             gear = &all->variable[i];
     text_print(out,
                "%*sFMU_START_METHOD = %d,\n%*sFMU_START_RATIO = %d,\n%*sFMU_START_KEEP = %d,\n%*sFMU_MOST_KEEP = "
-               "%d,\n%*sFMU_START_SPREAD = %d,\n%*sFMU_START_LOCATE = %d,\n%*sFMU_START_GEAR = %d,\n"
+               "%d,\n%*sFMU_START_SPREAD = %d,\n%*sFMU_START_LOCATE = %d,\n%*sFMU_START_MOST = %d,\n%*sFMU_MOST_WORK = "
+               "%d,\n%*sFMU_START_GEAR = %d,\n"
                "%*sFMU_LEAST_GEAR = %d,\n%*sFMU_MOST_GEAR = %d,\n%*sFMU_INDICATORS = %d,\n"
                "%*sFMU_CONTACTS = %d,\n%*sFMU_WHEELS = %d,\n%*sFMU_WHEELS_ROOM = %d\n",
                indent, "", e->method + 1, indent, "", e->ratio, indent, "", e->keep, indent, "", KEEP_MOST, indent, "",
-               e->spread, indent, "", e->locate, indent, "", gear ? (int)gear->start : 0, indent, "",
-               gear ? (int)gear->least : 0, indent, "", gear ? (int)gear->most : 0, indent, "", event_indicators(all),
-               indent, "", d->f->contacts ? d->f->contacts->stores : 0, indent, "", wheels, indent, "",
-               wheels ? wheels : 1);
+               e->spread, indent, "", e->locate, indent, "", e->most_work, indent, "", SCENE_MOST_WORK, indent, "",
+               gear ? (int)gear->start : 0, indent, "", gear ? (int)gear->least : 0, indent, "",
+               gear ? (int)gear->most : 0, indent, "", event_indicators(all), indent, "",
+               d->f->contacts ? d->f->contacts->stores : 0, indent, "", wheels, indent, "", wheels ? wheels : 1);
 }
 
 static void write_experiment(void *context, Text *out, int indent)

@@ -46,6 +46,7 @@ Experiment experiment_of(const Scene *scene)
         experiment.spread = scene_implicit(scene) && scene->spread;
         experiment.steady = scene->steady;
         experiment.locate = scene->locate;
+        experiment.most_work = scene->most_work;
     }
     return experiment;
 }
@@ -417,6 +418,12 @@ static void add_solver(Making *m, bool implicit, bool shares)
         add_step_count(m, 5, "solver.locate",
                        "1: steps are made in parts where contacts begin or end, 2: also where loads bend, 0: neither",
                        2, experiment.locate);
+        m->all->variable[m->all->count - 1].least = 0;
+    }
+    if (m->f->contacts || m->model->powertrain) {
+        add_step_count(m, 6, "solver.most_work",
+                       "the most evaluations of a step, right-hand sides and looks at contacts and gears; 0: no bound",
+                       SCENE_MOST_WORK, experiment.most_work);
         m->all->variable[m->all->count - 1].least = 0;
     }
 }

@@ -596,7 +596,7 @@ static void read_most_work(Scene *scene, const Item *most, bool replaced)
     const int least = GIC_LEAST_MOST(scene->ratio);
     if (scene->method >= METHOD_ADAMS)
         diag_fail(most->at, "leave it out, or take constant steps", "variable steps take as much work as they need");
-    const double number = doc_number(most, "most_work"), largest = 1e6;
+    const double number = doc_number(most, "most_work"), largest = SCENE_MOST_WORK;
     if (!(number >= least && number <= largest && number == floor(number)))
         diag_fail(most->at, "steps in which nothing happens take up to 4 `ratio` + 4 evaluations",
                   "most_work must be a whole number from %d to %g", least, largest);

@@ -114,7 +114,10 @@ int32_t integrator_method(const char *name);
 /* Their names, from 0; NULL: no more. */
 const char *integrator_word(int index);
 const char *integrator_name(int32_t method);
-enum { KEEP_MOST = 1000 }; /* steps with one Jacobian */
+enum {
+    KEEP_MOST = 1000,         /* steps with one Jacobian */
+    SCENE_MOST_WORK = 1000000 /* evaluations of a step that may be asked for */
+};
 /* True for methods that need code with implicit steps: GIC_ROS2, GIC_ROS3, GIC_IMEX, GIC_EXP3. */
 bool method_implicit(int32_t method);
 bool scene_implicit(const Scene *scene); /* the same of its method */

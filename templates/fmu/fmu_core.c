@@ -166,6 +166,7 @@ void fmu_reset(fmu_instance *instance)
     data->keep = FMU_START_KEEP;
     data->spread = FMU_START_SPREAD;
     data->locate = FMU_START_LOCATE;
+    data->most = FMU_START_MOST;
     data->gear = FMU_START_GEAR;
 }
 
@@ -181,6 +182,12 @@ fmu_result fmu_experiment(fmu_instance *instance, double start, int stops, doubl
     return FMU_OK;
 }
 
+/* RK4 has one rate. */
+static int32_t ratio_of(const fmu_data *data)
+{
+    return data->method == GIC_RK4 + 1 ? 1 : data->ratio;
+}
+
 fmu_result fmu_initialize(fmu_instance *instance)
 {
     fmu_data *data = &instance->data;
@@ -188,11 +195,15 @@ fmu_result fmu_initialize(fmu_instance *instance)
     int status;
     if (data->ready)
         return FMU_OK;
+    if (data->most > 0 && data->most < GIC_LEAST_MOST(ratio_of(data)))
+        return fmu_say(instance, FMU_ERROR, "solver.most_work must be 0, or %d and more with solver.ratio %d, not %d",
+                       (int)GIC_LEAST_MOST(ratio_of(data)), (int)ratio_of(data), (int)data->most);
     status = model->setup_with(&data->self, data->parameter);
     if (status != GIC_OK)
         return said(instance, FMU_ERROR, &data->self, "the model can't be set up", status);
     adopt(data);
     data->self.head.locate = data->locate;
+    data->self.head.most = data->most;
     if (model->implicit) {
         gic_implicit_head *head = (gic_implicit_head *)(void *)((char *)&data->self + model->implicit->head_offset);
         head->keep = data->keep;
@@ -382,6 +393,12 @@ static int shares(void)
     return model->implicit && model->implicit->share_count > 0;
 }
 
+/* Is there something that happens within steps? */
+static int has_events(void)
+{
+    return model->contacts || model->shift;
+}
+
 fmu_result fmu_get_integer(fmu_instance *instance, uint32_t reference, int32_t *value)
 {
     fmu_data *data = &instance->data;
@@ -393,6 +410,8 @@ fmu_result fmu_get_integer(fmu_instance *instance, uint32_t reference, int32_t *
         *value = data->spread;
     } else if (kind == FMU_SOLVER && i == FMU_SOLVER_LOCATE && model->contacts) {
         *value = data->locate;
+    } else if (kind == FMU_SOLVER && i == FMU_SOLVER_MOST && has_events()) {
+        *value = data->most;
     } else if (kind == FMU_DISCRETE && model->discrete_count > model->free_base && i == model->free_base) {
         const fmu_result result = fmu_initialize(instance);
         *value = data->self.discrete[i];
@@ -437,6 +456,11 @@ fmu_result fmu_set_integer(fmu_instance *instance, uint32_t reference, int32_t v
         if (value < 0 || value > 2)
             return fmu_say(instance, FMU_DISCARD, "solver.locate is 0, 1 or 2, not %d", (int)value);
         data->locate = value;
+    } else if (kind == FMU_SOLVER && i == FMU_SOLVER_MOST && has_events()) {
+        if (value < 0 || value > FMU_MOST_WORK)
+            return fmu_say(instance, FMU_DISCARD, "solver.most_work must be from 0 to %d, not %d", (int)FMU_MOST_WORK,
+                           (int)value);
+        data->most = value;
     } else if (kind == FMU_DISCRETE && model->discrete_count > model->free_base && i == model->free_base) {
         if (value < FMU_LEAST_GEAR || value > FMU_MOST_GEAR)
             return fmu_say(instance, FMU_DISCARD, "there is no gear %d", (int)value);
@@ -598,8 +622,7 @@ const char *fmu_no_exchange(void)
 
 static int one_step(fmu_data *data, gic_real step)
 {
-    return gic_step_dual_by(model, &data->self, step, data->method - 1, data->method == GIC_RK4 + 1 ? 1 : data->ratio,
-                            FMU_STEADY);
+    return gic_step_dual_by(model, &data->self, step, data->method - 1, ratio_of(data), FMU_STEADY);
 }
 
 fmu_result fmu_do_step(fmu_instance *instance, double point, double length)

@@ -21,14 +21,22 @@ enum {
     FMU_OUTPUT = 4,
     FMU_PARAMETER = 5,
     FMU_PORT = 6,
-    FMU_SOLVER = 7,   /* step; method, ratio, keep_jacobian, spread_jacobian, locate */
+    FMU_SOLVER = 7,   /* step; method, ratio, keep_jacobian, spread_jacobian, locate, most_work */
     FMU_DISCRETE = 8, /* whole numbers */
     FMU_INDICATOR = 9,
     FMU_ROAD = 10, /* FMU_PLANE numbers a wheel */
     FMU_PLACE = 11 /* x and y of each wheel's centre */
 };
 enum { FMU_HEIGHT, FMU_NORMAL_X, FMU_NORMAL_Y, FMU_NORMAL_Z, FMU_FRICTION, FMU_PLANE };
-enum { FMU_SOLVER_STEP, FMU_SOLVER_METHOD, FMU_SOLVER_RATIO, FMU_SOLVER_KEEP, FMU_SOLVER_SPREAD, FMU_SOLVER_LOCATE };
+enum {
+    FMU_SOLVER_STEP,
+    FMU_SOLVER_METHOD,
+    FMU_SOLVER_RATIO,
+    FMU_SOLVER_KEEP,
+    FMU_SOLVER_SPREAD,
+    FMU_SOLVER_LOCATE,
+    FMU_SOLVER_MOST
+};
 
 /* Modes; masks of several say where a call is legal. */
 enum {
@@ -68,7 +76,7 @@ typedef struct fmu_data {
     gic_real rate[FMU_STATES_ROOM];
     gic_real point; /* s, time that held[] is for */
     gic_real start_time, stop_time, step;
-    int32_t gear, method, ratio, keep, spread, locate;
+    int32_t gear, method, ratio, keep, spread, locate, most;
     int32_t mode, exchange;       /* exchange: model exchange, else co-simulation */
     int32_t stops;                /* is there a stop_time? */
     int32_t ready;                /* self is set up with the present start values */
