@@ -73,7 +73,7 @@ bool engine_has_implicit(const char *name)
 static void check_implicit(Pool *pool, const char *name, const Scene *scene)
 {
     if (!engine_has_implicit(name))
-        scene_no_implicit(scene, pool_print(pool, "the engine '%s'", name));
+        scene_no_implicit_engine(pool, scene, name);
 }
 
 void engine_check_shares(const Engine *engine, const Scene *scene)

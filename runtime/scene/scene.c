@@ -143,12 +143,23 @@ void scene_no_auto(const Scene *scene, const char *what)
                   "%s does not choose an integrator (auto) yet", what);
 }
 
-void scene_no_implicit(const Scene *scene, const char *what)
+static void no_implicit(const Scene *scene, const char *what, const char *remedy)
 {
     scene_no_auto(scene, what);
     if (scene && scene_implicit(scene))
-        diag_fail(scene_place(scene, "integrator"), "write `integrator: ab3` or `rk4`, with a shorter step",
-                  "%s does not take implicit steps (%s) yet", what, integrator_name(scene->method));
+        diag_fail(scene_place(scene, "integrator"), remedy, "%s does not take implicit steps (%s) yet", what,
+                  integrator_name(scene->method));
+}
+
+void scene_no_implicit(const Scene *scene, const char *what)
+{
+    no_implicit(scene, what, "write `integrator: ab3` or `rk4`, with a shorter step");
+}
+
+void scene_no_implicit_engine(Pool *pool, const Scene *scene, const char *engine)
+{
+    no_implicit(scene, pool_print(pool, "the engine '%s'", engine),
+                "take `--engine tcc` or `cc`, or write `integrator: ab3` or `rk4`, with a shorter step");
 }
 
 /* Smaller tolerances are below rounding, larger ones give useless results. */

@@ -129,6 +129,8 @@ Place scene_place(const Scene *scene, const char *key);
 void scene_no_auto(const Scene *scene, const char *what);
 /* Fail if the scene has an implicit integrator or `auto`; for what does not take one. what: "a page" */
 void scene_no_implicit(const Scene *scene, const char *what);
+/* The same for an engine. */
+void scene_no_implicit_engine(Pool *pool, const Scene *scene, const char *engine);
 bool tolerance_known(double tolerance); /* true if variable steps can keep this tolerance */
 /* A new profile for the input that `key` names; name: of all inputs. Fails if the input has one. */
 Profile *scene_profile(Pool *pool, const Model *model, Scene *scene, const Item *key, const char *const *name);

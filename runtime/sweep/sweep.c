@@ -54,7 +54,7 @@ static const Engine *open_lanes_or_one(Pool *pool, const SweepRequest *request, 
     code.exponential = scene->method == GIC_EXP3;
     code.spread = scene->spread;
     if (request->engine && !engine_has_implicit(request->engine))
-        scene_no_implicit(scene, pool_print(pool, "the engine '%s'", request->engine));
+        scene_no_implicit_engine(pool, scene, request->engine);
     if (request->engine)
         return engine_open(pool, request->engine, model, &code);
     const bool tried = !why;

@@ -367,7 +367,7 @@ scene 1 0.01 'integrator: exp3' 'keep_jacobian: 16' 'spread_jacobian: true' >bad
 refused 'spread_jacobian is for implicit steps by these' 'imex' "$models/pendulum.veh" bad.scene -o none.csv
 scene 1 0.01 'integrator: ros3' >good.scene
 for engine in tape gic gcp1; do
-    refused "the engine '$engine' does not take implicit steps (ros3) yet" 'rk4' --engine $engine "$models/pendulum.veh" good.scene -o none.csv
+    refused "the engine '$engine' does not take implicit steps (ros3) yet" 'take `--engine tcc` or `cc`' --engine $engine "$models/pendulum.veh" good.scene -o none.csv
 done
 refused 'a page of --drive does not take implicit steps' 'rk4' --drive none.csv.html "$models/hmmwv_vehicle.veh" good.scene
 scene 1 0.01 'integrator: ros4' >bad.scene
