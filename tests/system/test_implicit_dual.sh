@@ -114,6 +114,18 @@ for method in ros2 ros3 imex exp3; do
         check "$method: the bits of $engine" cmp -s bits.csv other.csv
     done
 done
+# ---- the longest step that --modes tells: the filter's, 20 fast steps of 6/11 of its time, as it hardly feels the body
+scene 1 0.01 'integrator: imex' 'ratio: 20' >modes.scene
+"$gicrun" --modes carrier.veh modes.scene >modes 2>err
+stable=$(sed -n 's/^imex, ratio 20  *\([0-9.]*\) s.*/\1/p' modes)
+check "--modes: stable up to ${stable:-nothing} s with a ratio of 20" within "$(awk "BEGIN { d = ${stable:-0} * 500 / 20 * 11 / 6 - 1; print d < 0 ? -d : d }")" 0.05
+for part in 0.95 1.05; do
+    step=$(awk "BEGIN { print $part * ${stable:-1} }")
+    printf '%s\n' 'gicscene: 1' "step: $step" "duration: $(awk "BEGIN { print 2000 * $step }")" 'integrator: imex' 'ratio: 20' 'outputs: [z]' 'initial: {coordinates: {x: 1}}' >limit.scene
+    run carrier.veh limit.scene -o limit.csv
+    check "2000 steps of $part of it" exits "$([ $part = 0.95 ] && echo 0 || echo 1)"
+done
+
 # ---- a vehicle with tires, powertrain and gears, against short steps
 # lines of a scene but for times and pictures
 rest_of() {
