@@ -24,7 +24,8 @@ static const char usage[] =
     "usage: gicgen MODEL.veh [-o FILE.c]      write FILE.c and its header (default: <model>.c here)\n"
     "       gicgen --batch N MODEL.veh [--scene FILE.scene] [-o FILE.c]\n"
     "                                         write code for N vehicles at once (default: <model>_batch.c), to be\n"
-    "                                         compiled beside <model>.c, which is for the same scene or for any\n"
+    "                                         compiled beside <model>.c for the same scene; if that is no rig, the\n"
+    "                                         one for any scene will do\n"
     "       gicgen --scene FILE.scene MODEL.veh [--lanes W] [-o FILE.c]\n"
     "                                         write code for that scene alone, with nothing that it doesn't need\n"
     "       gicgen --fmu 2|3 MODEL.veh [--scene FILE.scene] [-o FILE.fmu]\n"
@@ -86,7 +87,8 @@ typedef struct Options {
 
 static _Noreturn void usage_error(const char *message, const char *word)
 {
-    fprintf(stderr, "gicgen: error: %s%s%s\n%s", message, word ? ": " : "", word ? word : "", usage);
+    fprintf(stderr, "gicgen: error: %s%s%s\n  remedy: `gicgen -h` shows how\n", message, word ? ": " : "",
+            word ? word : "");
     exit(2);
 }
 
