@@ -12,15 +12,11 @@ root=$(cd "$(dirname "$0")/../.." && pwd)
 . "$(dirname "$0")/../lib/checking.sh"
 # shellcheck source=tests/lib/against_gic.sh
 . "$(dirname "$0")/../lib/against_gic.sh"
+# shellcheck source=tests/lib/scenes.sh
+. "$(dirname "$0")/../lib/scenes.sh"
 cd "$work" || exit 1
 models=$root/models
 
-# scene DURATION STEP LINE...: of a run with rows at its whole tenths
-scene() {
-    printf 'gicscene: 1\nduration: %s\nstep: %s\noutput_step: %s\n' "$1" "$2" "$(awk "BEGIN { print $1 / 10 }")"
-    shift 2
-    printf '%s\n' "$@"
-}
 # order NAME MODEL REFERENCE STEPS LEAST MOST FILE: of a scene whose step is @, at STEPS and twice as many a tenth of
 # the run, against rows of a reference
 order() {
@@ -219,10 +215,6 @@ done
 reference() {
     sed "/^step:/d; s/^integrator:.*/integrator: adams/; /^keep/d" "$2" >reference.scene
     "$gicrun" -q --tolerance 1e-12 "$1" reference.scene -o "$3" 2>err
-}
-# lines of a scene but for times and pictures
-rest_of() {
-    awk '/^[a-z]/ { gone = /^(gicscene|duration|step|integrator|output_step|ratio|steady|sleep|plot|locate|tolerance)/ } !gone' "$1"
 }
 cat >waves <<'END'
 initial: {position: [0, 0, 0.474], velocity: [5, 0, 0]}

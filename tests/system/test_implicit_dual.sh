@@ -12,15 +12,10 @@ root=$(cd "$(dirname "$0")/../.." && pwd)
 . "$(dirname "$0")/../lib/checking.sh"
 # shellcheck source=tests/lib/against_gic.sh
 . "$(dirname "$0")/../lib/against_gic.sh"
+# shellcheck source=tests/lib/scenes.sh
+. "$(dirname "$0")/../lib/scenes.sh"
 cd "$work" || exit 1
 models=$root/models
-
-# scene DURATION STEP LINE...: of a run with rows at its whole tenths
-scene() {
-    printf 'gicscene: 1\nduration: %s\nstep: %s\noutput_step: %s\n' "$1" "$2" "$(awk "BEGIN { print $1 / 10 }")"
-    shift 2
-    printf '%s\n' "$@"
-}
 
 # ---- 2 kg on 200 N/m and 2 Ns/m carry 0.01 kg on a bushing of 1e4 N/m and 20 Ns/m (two motions of some -1000 /s); a
 # filter of -500 /s pushes back. Steps of 20 ms: 20 |lambda|; a ratio of 20: half a unit.
@@ -127,10 +122,6 @@ for part in 0.95 1.05; do
 done
 
 # ---- a vehicle with tires, powertrain and gears, against short steps
-# lines of a scene but for times and pictures
-rest_of() {
-    awk '/^[a-z]/ { gone = /^(gicscene|duration|step|integrator|output_step|ratio|steady|sleep|plot|locate|tolerance)/ } !gone' "$1"
-}
 {
     scene 3 0.0005 'integrator: rk4' 'outputs: [chassis, chassis_velocity]'
     rest_of "$models/scenes/full_run.scene"
