@@ -71,10 +71,10 @@ static void test_fast_step(void **unused)
     enum { RATIO = 6 };
     const double step = 0.006, torque[] = {600, -900, NAN, 2000, 1e300, 1.7e308};
     static hmmwv_tires car, other, before;
+    static Push push; /* as long as what points to it */
     gic_model plain = hmmwv_tires_model;
     assert_non_null(plain.fast_step);
     plain.fast_step = NULL;
-    Push push = {0, 0, 0};
     start(&car);
     car.head.input_function = push_on;
     car.head.user = &push;
