@@ -87,7 +87,7 @@ $(archive): $(objects)
 	$(AR) rcs $@ $^
 
 $(BUILD)/gicgen: $(BUILD)/generator/gicgen.o $(archive)
-	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lyaml -lminizip -lm
+	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LIBRARIES)
 
 $(BUILD)/gicrun: $(BUILD)/runtime/gicrun/gicrun.o $(archive)
 	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LIBRARIES)

@@ -9,6 +9,7 @@
 #include "model/model.h"
 #include "read/read.h"
 #include "report/report.h"
+#include "run/stiff_states.h"
 #include "scene/scene.h"
 #include "sequence/sequence.h"
 #include "specialize/specialize.h"
@@ -17,6 +18,7 @@
 #include "vehicle/effort.h"
 #include "vehicle/vehicle.h"
 
+#include <float.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -50,6 +52,8 @@ static const char usage[] =
     "                   likewise\n"
     "  --exponential    with --implicit: exponential steps, too\n"
     "  --spread-jacobian  with --implicit: steps that keep a Jacobian may share the work of the next\n"
+    "  --stiff STEP     with --implicit: only states with a share in motions that are stiff in steps of STEP seconds\n"
+    "                   are implicit\n"
     "  --tire-tables    Magic Formulas by table, in lanes by short polynomials, within 1e-6 of a wheel's load:\n"
     "                   quicker (models/TIRES.md)\n"
     "  --solve FORM     of the equations of motion: auto (default: fewer operations), reduced, articulated for long\n"
@@ -83,6 +87,7 @@ typedef struct Options {
     const char *model, *scene, *output, *page, *templates; /* page: of --graph or --report; scene: NULL: none */
     bool formed, recovered;                                /* are `solve` and `recovery` given? */
     bool derivatives, implicit, exponential, spread, tire_tables;
+    double stiff; /* s; 0: all states are implicit */
 } Options;
 
 static _Noreturn void usage_error(const char *message, const char *word)
@@ -123,6 +128,15 @@ static void read_lanes(void *options, char *word)
     ((Options *)options)->batch.lanes = lanes_of(word);
     if (!((Options *)options)->batch.lanes)
         usage_error("--lanes takes 2, 4, 8 or 16, not", word);
+}
+
+static void read_stiff(void *options, char *word)
+{
+    char *end;
+    const double step = strtod(word, &end);
+    if (end == word || *end || !(step > 0) || step > DBL_MAX)
+        usage_error("--stiff takes the length of a step in seconds, above 0, not", word);
+    ((Options *)options)->stiff = step;
 }
 
 static void read_solve(void *options, char *form)
@@ -167,6 +181,7 @@ static Options read_options(int count, char **word)
         {"implicit", .on = &options.implicit},
         {"exponential", .on = &options.exponential},
         {"spread-jacobian", .on = &options.spread},
+        {"stiff", .read = read_stiff},
         {"tire-tables", .on = &options.tire_tables},
         {"templates", .text = &options.templates},
         {"main", .on = &main_program},
@@ -215,8 +230,12 @@ static Options read_options(int count, char **word)
         usage_error("--derivatives is for the code of one vehicle in any scene, without --batch and --scene; "
                     "vehicles of a batch have derivatives beside it (models/DERIVATIVES.md, Many vehicles)",
                     NULL);
-    if ((options.spread || options.exponential) && !options.implicit)
-        usage_error("it goes with --implicit", options.spread ? "--spread-jacobian" : "--exponential");
+    if ((options.spread || options.exponential || options.stiff > 0) && !options.implicit)
+        usage_error("it goes with --implicit", options.spread        ? "--spread-jacobian"
+                                               : options.exponential ? "--exponential"
+                                                                     : "--stiff");
+    if (options.stiff > 0 && options.exponential)
+        usage_error("exponential steps treat all states alike: leave out --exponential or", "--stiff");
     if (options.implicit && !fmu && (options.task != TASK_GENERATE || options.scene))
         usage_error("--implicit is for an FMU and the code of one vehicle in any scene, without --batch and --scene",
                     NULL);
@@ -281,6 +300,8 @@ static void write_code(Pool *pool, const Model *model, const Sequence *sequence,
     style.implicit = options->implicit;
     style.exponential = options->exponential;
     style.spread = options->spread;
+    if (options->stiff > 0)
+        style.splitting = stiff_states(pool, setting->drawn, options->solve, options->recovery, options->stiff);
     bool batch = options->task == TASK_BATCH;
     const char *path = options->output ? options->output : pool_print(pool, batch ? "%s_batch.c" : "%s.c", model->name);
     if (strcmp(path, "-") && !path_ends(path, ".c"))

@@ -402,6 +402,7 @@ static void implicit_solve(const Implicit *w, gic_real reach, gic_real *u)
         return;
     }
     gic_real *const x = w->stage;
+    copy(u, b, w->n); /* states that are explicit go on so */
     for (int32_t i = 0; i < m; ++i) {
         const gic_real *row = w->jacobian + w->how->columns * w->how->unknown[i];
         x[i] = b[w->how->unknown[i]];

@@ -245,7 +245,7 @@ typedef struct gic_implicit_head {
 } gic_implicit_head;
 
 /* What implicit steps need of a model: code of gicgen --implicit. The unknowns of their linear systems are the states
- * but for positions and coordinates whose rates are states. */
+ * but for positions and coordinates whose rates are states; with --stiff, only those that are implicit. */
 typedef struct gic_implicit {
     int32_t columns; /* numbers of a row of the Jacobian: states, inputs, others */
     int32_t unknown_count;

@@ -18,10 +18,11 @@ const RateColumns *columns_of(Generation *g)
         const int columns = jacobian_columns(g), wanted = weighed ? states(g) + g->model->inputs : columns;
         const bool *geometric = columns_apart(g);
         bool *apart = pool_alloc(g->pool, (size_t)columns + 1);
+        const bool *kept = weighed && g->style->splitting ? g->style->splitting->implicit : NULL;
         for (int c = 0; c < columns; ++c)
-            apart[c] = c >= wanted || geometric[c];
+            apart[c] = c >= wanted || geometric[c] || (kept && c < states(g) && !kept[c]);
         g->columns_made[weighed] = true;
-        g->columns[weighed] = rate_columns(g->pool, g->formulation, apart, columns, weighed);
+        g->columns[weighed] = rate_columns(g->pool, g->formulation, apart, columns, weighed, kept);
     }
     return g->columns[weighed];
 }

@@ -19,15 +19,23 @@ typedef struct Constants {
     Ex *e;
 } Constants;
 
+/* Which states implicit steps treat implicitly; the others go on explicitly. A coordinate and its rate are so together,
+ * and so are the base's place and velocity, its Euler parameters and angular velocity. */
+typedef struct Splitting {
+    const bool *implicit; /* [states] */
+    const char *told;     /* lines for people: which these are, and why */
+} Splitting;
+
 /* How the text looks. No style changes the order of operations: results are the same to the last bit. */
 typedef struct Style {
-    int leaves;              /* in one expression at most, a function's name counted as one: also bounds its nesting */
-    bool doubles;            /* literals are doubles: 0.5; else of either number type: R(0.5) */
-    bool whole_self_test;    /* false: the self-test measures constraints alone */
-    bool derivatives;        /* the file has functions for derivatives too; not for one scene */
-    bool implicit;           /* what implicit steps need; the same */
-    bool spread;             /* with `implicit`: a Jacobian may be evaluated in shares, one a step */
-    bool exponential;        /* with `implicit`: room for exponential steps, too */
+    int leaves;           /* in one expression at most, a function's name counted as one: also bounds its nesting */
+    bool doubles;         /* literals are doubles: 0.5; else of either number type: R(0.5) */
+    bool whole_self_test; /* false: the self-test measures constraints alone */
+    bool derivatives;     /* the file has functions for derivatives too; not for one scene */
+    bool implicit;        /* what implicit steps need; the same */
+    bool spread;          /* with `implicit`: a Jacobian may be evaluated in shares, one a step */
+    const Splitting *splitting; /* with `implicit`: NULL: all states are implicit */
+    bool exponential;           /* with `implicit`: room for exponential steps, too */
     bool exact;              /* with `implicit`: for integrators of a host, which want the Jacobian of accelerations */
     bool lanes;              /* numbers are vectors; a check that fails closes its lanes, and the function goes on */
     int width;               /* with `lanes`: lanes of a vector, with one subset a lane; 0: one vehicle a lane */

@@ -9,6 +9,8 @@
 #include "vehicle/columns.h"
 #include "vehicle/vehicle.h"
 
+#include <string.h>
+
 /* The state that is the rate of a state; -1: none is. */
 static int rate_of(const Generation *g, int state)
 {
@@ -30,12 +32,33 @@ static int position_of(const Generation *g, int state)
     return -1;
 }
 
+static bool is_implicit(const Generation *g, int state)
+{
+    return !g->style->splitting || g->style->splitting->implicit[state];
+}
+
+/* Is a state an unknown of the linear systems? */
+static bool is_unknown(const Generation *g, int state)
+{
+    return rate_of(g, state) < 0 && is_implicit(g, state);
+}
+
 static int unknowns(const Generation *g)
 {
     int count = 0;
     for (int i = 0; i < states(g); ++i)
-        count += rate_of(g, i) < 0;
+        count += is_unknown(g, i);
     return count;
+}
+
+/* Which states are implicit, as comments. */
+static void write_splitting(const Generation *g, Text *out, int indent)
+{
+    const char *start = g->style->splitting->told;
+    for (size_t length; *start; start += length + (start[length] == '\n')) {
+        length = strcspn(start, "\n");
+        line(out, indent, "/* %.*s */", (int)length, start);
+    }
 }
 
 void write_implicit_sizes(Generation *whole, Text *out, int indent)
@@ -43,6 +66,8 @@ void write_implicit_sizes(Generation *whole, Text *out, int indent)
     Generation *g = one_by_one(whole);
     if (!g->style->implicit)
         return;
+    if (g->style->splitting)
+        write_splitting(g, out, indent);
     line(out, indent, "%s_IMPLICIT_UNKNOWNS = %d,", g->upper, unknowns(g));
     if (!has_tangents(g))
         line(out, indent, "%s_JACOBIAN_COLUMNS = %d, /* of implicit steps */", g->upper, jacobian_columns(g));
@@ -75,7 +100,7 @@ int implicit_unknowns(const Generation *g, int **unknown, int **position)
     *unknown = pool_alloc(g->pool, ((size_t)states(g) + 1) * sizeof **unknown);
     *position = pool_alloc(g->pool, ((size_t)states(g) + 1) * sizeof **position);
     for (int i = 0; i < states(g); ++i)
-        if (rate_of(g, i) < 0) {
+        if (is_unknown(g, i)) {
             (*unknown)[count] = i;
             (*position)[count++] = position_of(g, i);
         }
@@ -96,6 +121,9 @@ static void write_implicit_solution(void *context, Text *out, int indent)
     int *unknown, *position;
     (void)implicit_unknowns(g, &unknown, &position);
     write_elimination_solution(g, out, indent, unknowns(g), unknown, position);
+    for (int i = 0; i < states(g); ++i)
+        if (!is_implicit(g, i))
+            line(out, indent, "u[%d] = b[%d]; /* explicit: %s */", i, i, state_number(g->pool, g->formulation, i).name);
 }
 
 bool implicit_is_short(Generation *g)
@@ -129,7 +157,7 @@ static void write_unknowns(void *context, Text *out, int indent)
 {
     const Generation *g = context;
     for (int i = 0; i < states(g); ++i)
-        if (rate_of(g, i) < 0)
+        if (is_unknown(g, i))
             line(out, indent, "%d, /* %s */", i, state_number(g->pool, g->formulation, i).name);
     if (unknowns(g) == 0)
         line(out, indent, "0, /* none */");
@@ -139,7 +167,7 @@ static void write_positions(void *context, Text *out, int indent)
 {
     const Generation *g = context;
     for (int i = 0; i < states(g); ++i)
-        if (rate_of(g, i) < 0)
+        if (is_unknown(g, i))
             line(out, indent, "%d,", position_of(g, i));
     if (unknowns(g) == 0)
         line(out, indent, "0,");

@@ -156,7 +156,25 @@ typedef struct Weights {
     const Ex *M;       /* [n][n] upper triangle */
     const bool *reads; /* [n][parts] what of part[] right-hand sides follow */
     const Ex *lever;   /* [parts of loads][n] what right-hand sides have of a part of the loads */
+    const bool *kept;  /* [states] rows that are wanted; NULL: all */
 } Weights;
+
+/* The state that is the rate of an unknown. Of the base's origin it is in world axes, the unknown in the base's. */
+static int velocity_of(const Whole *whole, int unknown)
+{
+    const Plan *plan = whole->plan;
+    if (whole->model->free_base && unknown < 6)
+        return 7 + plan->free_coordinates + (unknown + 3) % 6;
+    for (int w = 0; w < whole->model->coordinates; ++w)
+        if (plan->coordinate_unknown[w] == unknown)
+            return plan->coordinate_rate[w];
+    return -1;
+}
+
+static bool is_kept(const Weights *w, int state)
+{
+    return !w->kept || w->kept[state];
+}
 
 static Ex unit_seed(const void *context, Dag *dag, Element element)
 {
@@ -200,6 +218,8 @@ static bool push_parts(const Differentiation *d, const Weights *w, const Ex *b, 
         for (int i = 0; i < w->n; ++i)
             right[i] = ex_add(dag, right[i], ex_mul(dag, slope[value[k]], w->lever[w->n * k + i]));
     for (int i = 0; i < w->n; ++i) {
+        if (!is_kept(w, velocity_of(w->whole, i)))
+            right[i] = 0;
         d->pushed[i] = !ex_is(dag, right[i], 0);
         if (d->pushed[i])
             block_store(out, right[i], element_of(ARRAY_right, lane, i));
@@ -353,18 +373,6 @@ static void constrain(Whole *whole, Ex **column)
 
 /* ---- the mass matrix ------------------------------------------------------------------------------------------ */
 
-/* The state that is the rate of an unknown. Of the base's origin it is in world axes, the unknown in the base's. */
-static int velocity_of(const Whole *whole, int unknown)
-{
-    const Plan *plan = whole->plan;
-    if (whole->model->free_base && unknown < 6)
-        return 7 + plan->free_coordinates + (unknown + 3) % 6;
-    for (int w = 0; w < whole->model->coordinates; ++w)
-        if (plan->coordinate_unknown[w] == unknown)
-            return plan->coordinate_rate[w];
-    return -1;
-}
-
 /* Components of a vector along the base, at z[3], become those in world axes. */
 static void turn_to_world(const Whole *whole, Ex *z)
 {
@@ -433,7 +441,8 @@ static void store_masses(const Weights *w, const Ex *G, int first, RateColumns *
     all->mass_row = pool_alloc(w->whole->dag->pool, ((size_t)(n * n) + 1) * sizeof(int));
     all->mass_column = pool_alloc(w->whole->dag->pool, ((size_t)(n * n) + 1) * sizeof(int));
     for (int i = 0; i < n * n; ++i) {
-        if (ex_is(w->whole->dag, G[i], 0))
+        if (ex_is(w->whole->dag, G[i], 0) || !is_kept(w, velocity_of(w->whole, i / n)) ||
+            !is_kept(w, velocity_of(w->whole, i % n)))
             continue;
         all->mass_row[all->masses] = velocity_of(w->whole, i / n);
         all->mass_column[all->masses] = velocity_of(w->whole, i % n);
@@ -468,7 +477,14 @@ static void set_accelerations(Block *block, const Ex *acc, const Ex *z, int n)
         block->store[i].value = image[root[i]];
 }
 
-const RateColumns *rate_columns(Pool *pool, const Formulation *f, const bool *apart, int columns, bool weighed)
+bool rate_columns_weigh(Pool *pool, const Formulation *f)
+{
+    return f->plan->solve == SOLVE_REDUCED && !f->plan->reduction &&
+           subsets_columns(pool, f->sequence, f->plan->formula, f->model->free_base, true);
+}
+
+const RateColumns *rate_columns(Pool *pool, const Formulation *f, const bool *apart, int columns, bool weighed,
+                                const bool *kept)
 {
     const Plan *plan = f->plan;
     const Sequence *sequence = f->sequence;
@@ -496,7 +512,7 @@ const RateColumns *rate_columns(Pool *pool, const Formulation *f, const bool *ap
     whole_store_rates(whole, &rates, acc);
     all->wheels = f->wheels ? wheel_columns_new(pool, f, dag, b, n) : NULL;
     bool *moved = pool_alloc(pool, all->wheels ? (size_t)all->wheels->parts + 1 : 1);
-    Weights weights = {.whole = whole, .n = n, .M = M, .lever = weighed ? levers(whole, b, n) : NULL};
+    Weights weights = {.whole = whole, .n = n, .M = M, .lever = weighed ? levers(whole, b, n) : NULL, .kept = kept};
     if (weighed && all->wheels) {
         weights.parts = all->wheels->parts;
         weights.reads = wheels_read(dag, all->wheels, b, n);
@@ -520,11 +536,11 @@ const RateColumns *rate_columns(Pool *pool, const Formulation *f, const bool *ap
                 weigh(&weights, &d, lane, column[c]);
         }
     all->factors = solve_column(dag, factors, b, n, all->wheels, &all->residuals, &all->solution);
-    if (f->model->free_base)
+    if (f->model->free_base && column[3]) /* all four Euler parameters have columns, or none */
         constrain(whole, column);
     for (int c = 0; c < columns; ++c)
         for (int r = 0; r < rows && column[c]; ++r)
-            if (!ex_is(dag, column[c][r], 0))
+            if (!ex_is(dag, column[c][r], 0) && is_kept(&weights, r))
                 block_store(&all->block, column[c][r], element_at(ARRAY_jacobian, columns * r + c));
     if (weighed) {
         store_masses(&weights, turned_masses(&weights), columns * rows, all);

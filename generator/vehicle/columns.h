@@ -30,8 +30,12 @@ typedef struct RateColumns {
     int *mass_row, *mass_column; /* [masses] their velocities, as states */
 } RateColumns;
 
-/* apart [columns]: columns that are not among them. NULL: the model has something that this is not made for: another
- * form of the equations of motion than the reduced one, or knowns of several classes. */
-const RateColumns *rate_columns(Pool *pool, const Formulation *f, const bool *apart, int columns, bool weighed);
+/* apart [columns]: columns that are not among them; of Euler parameters all four are, or none. kept [states]: rows of
+ * weighed columns that are wanted; NULL: all. NULL: the model has something that this is not made for: another form of
+ * the equations of motion than the reduced one, or knowns of several classes. */
+const RateColumns *rate_columns(Pool *pool, const Formulation *f, const bool *apart, int columns, bool weighed,
+                                const bool *kept);
+/* Does code of the formulation have weighed columns? */
+bool rate_columns_weigh(Pool *pool, const Formulation *f);
 
 #endif
