@@ -42,7 +42,7 @@ static const double part = 2 / 3.0;    /* of a step, the reach of imex */
 
 /* A state about which the model moves. */
 typedef struct Point {
-    double *A, *W; /* [count][count] in small motions; W: what rows of implicit steps are multiplied by */
+    double *A, *M; /* [count][count] in small motions; M: masses of rates, 1 of all other numbers */
     const Modes *modes;
     struct Point *next;
 } Point;
@@ -50,7 +50,8 @@ typedef struct Point {
 typedef struct Splitter {
     Pool *pool;
     const Model *model;
-    const Linear *linear;
+    const Engine *engine;
+    const Linear *linear; /* of this engine */
     Solve solve;
     double step;
     int groups;
@@ -143,7 +144,8 @@ static double *square(const Splitter *s)
     return pool_alloc(s->pool, (count * count + 1) * sizeof(double));
 }
 
-/* The solution of W_SS X = (W A)_SS for the numbers S that are chosen; all other entries are 0. */
+/* What implicit steps have of A: the solution of M_SS X = (M A)_SS for the numbers S that are chosen, A_SS where rows
+ * are not weighed; all other entries are 0. */
 static void find_implicit(const Splitter *s, const Point *point, gsl_matrix *kept)
 {
     const int count = s->linear->count;
@@ -160,13 +162,13 @@ static void find_implicit(const Splitter *s, const Point *point, gsl_matrix *kep
     int sign;
     for (int i = 0; i < n; ++i)
         for (int j = 0; j < n; ++j)
-            gsl_matrix_set(lu, (size_t)i, (size_t)j, point->W[own[i] * count + own[j]]);
+            gsl_matrix_set(lu, (size_t)i, (size_t)j, s->weighed ? point->M[own[i] * count + own[j]] : i == j);
     gsl_linalg_LU_decomp(lu, order, &sign);
     for (int j = 0; j < n; ++j) {
         for (int i = 0; i < n; ++i) {
-            double sum = 0;
-            for (int k = 0; k < count; ++k)
-                sum += point->W[own[i] * count + k] * point->A[k * count + own[j]];
+            double sum = s->weighed ? 0 : point->A[own[i] * count + own[j]];
+            for (int k = 0; k < count && s->weighed; ++k)
+                sum += point->M[own[i] * count + k] * point->A[k * count + own[j]];
             gsl_vector_set(x, (size_t)i, sum);
         }
         gsl_linalg_LU_svx(lu, order, x);
@@ -309,18 +311,16 @@ static bool all_chosen(const Splitter *s)
 /* ---- states about which the model moves ------------------------------------------------------------------- */
 
 /* The mass matrix in the order of small motions' rates, 1 for other numbers. A status. */
-static int find_masses(const Linear *linear, Instance *self, bool weighed, double *W)
+static int find_masses(const Linear *linear, Instance *self, double *M)
 {
     const TapeEngine *engine = linear->engine;
     const Plan *plan = engine->formulation->plan;
     const int count = linear->count, n = plan->unknowns, base = engine->code.free_base ? 6 : 0;
     double e[4], acc[n + 1], tau[2][n + 1];
     int number[n + 1]; /* of the unknown's rate among small motions */
-    memset(W, 0, (size_t)(count * count) * sizeof *W);
+    memset(M, 0, (size_t)(count * count) * sizeof *M);
     for (int i = 0; i < count; ++i)
-        W[count * i + i] = 1;
-    if (!weighed)
-        return GIC_OK;
+        M[count * i + i] = 1;
     for (int i = 0; i < n; ++i)
         number[i] = linear->places + (i + 3) % 6; /* the tape's order is rotation, displacement */
     for (int w = 0, place = base; w < plan->model->coordinates; ++w)
@@ -336,20 +336,20 @@ static int find_masses(const Linear *linear, Instance *self, bool weighed, doubl
         status = tape_whole(self, engine->inverse, 0, y, e, NULL, acc, tau[1]);
         acc[j] = 0;
         for (int i = 0; i < n; ++i)
-            W[count * number[i] + number[j]] = tau[1][i] - tau[0][i];
+            M[count * number[i] + number[j]] = tau[1][i] - tau[0][i];
     }
     return status;
 }
 
-/* Take the motions about the present state of an instance of `linear` into account. Where there are no derivatives it
- * is passed over. */
+/* Take the motions about the present state of an instance of `linear` into account. Where there are
+ * no derivatives it is passed over. */
 static void add_point(Splitter *s, const Linear *linear, Instance *self)
 {
     Point *point = pool_alloc(s->pool, sizeof *point);
     double f[linear->count + 1];
     point->A = square(s);
-    point->W = square(s);
-    if (linearize(linear, self, f, point->A) != GIC_OK || find_masses(linear, self, s->weighed, point->W) != GIC_OK)
+    point->M = square(s);
+    if (linearize(linear, self, f, point->A) != GIC_OK || find_masses(linear, self, point->M) != GIC_OK)
         return;
     point->modes = modes_try(s->pool, linear, point->A);
     if (!point->modes)
@@ -368,27 +368,90 @@ static void add_equilibrium(void *context)
     pool_free(pool);
 }
 
-/* Both ends of stops of coordinates, where they press, their dampers all there. */
-static void add_stops(Splitter *s, const Instance *drawn)
+/* z [places]: how the places of a point give way to forces along the gradient of a contact. A little of the masses is
+ * added to stiffness, for there are directions without any. */
+static void give_way(const Splitter *s, const Point *point, const double *gradient, double *z)
 {
-    static const double depth = 1e-6; /* beyond the end, m or rad */
-    const gic_model *code = &s->linear->engine->code;
-    const Model *model = s->model;
-    Instance *self = (Instance *)(void *)instance_new(s->pool, &(Engine){.code = code, .context = s->linear->engine});
-    for (int i = 0; i < model->forces; ++i) {
-        const Force *force = &model->force[i];
-        const int state = force->coordinate >= 0 ? code->coordinate_state[force->coordinate] : -1;
-        const Law *const end[2] = {force->low, force->high};
-        for (int side = 0; side < 2 && force_is_stop(force) && state >= 0; ++side) {
-            if (!end[side])
-                continue;
-            const double fade = force->fade ? law_number(force->fade, model) : 0;
-            const double beyond = fmax(fade, 0) + depth;
-            memcpy(self, drawn, code->size);
-            tape_array(self, code->state_offset)[state] = law_number(end[side], model) + (side ? beyond : -beyond);
-            add_point(s, s->linear, self);
+    static const double softest = 1; /* 1/s^2 */
+    const int places = s->linear->places, count = s->linear->count;
+    const size_t n = (size_t)places;
+    gsl_matrix *stiffness = gsl_matrix_alloc(n, n);
+    gsl_vector_view x = gsl_vector_view_array(z, n);
+    gsl_permutation *order = gsl_permutation_alloc(n);
+    int sign;
+    for (int i = 0; i < places; ++i)
+        for (int j = 0; j < places; ++j) {
+            const double *row = point->M + count * (places + i);
+            double sum = softest * row[places + j];
+            for (int k = places; k < 2 * places; ++k)
+                sum -= row[k] * point->A[count * k + j];
+            gsl_matrix_set(stiffness, (size_t)i, (size_t)j, sum);
         }
+    memcpy(z, gradient, n * sizeof *z);
+    gsl_linalg_LU_decomp(stiffness, order, &sign);
+    gsl_linalg_LU_svx(stiffness, order, &x.vector);
+    gsl_permutation_free(order);
+    gsl_matrix_free(stiffness);
+}
+
+/* Push an instance, which is at the point, until contact k has a load, by a little more than `depth`. False: it can't
+ * be pushed so far. */
+static bool touch(const Splitter *s, const Point *point, Instance *self, int k, double depth)
+{
+    enum { MOVES = 8 };
+    const Linear *linear = s->linear;
+    const gic_model *code = &linear->engine->code;
+    double f[linear->count + 1], press[code->contact_count + 1], z[linear->count + 1], gradient[linear->places + 1];
+    for (int move = 0; move < MOVES && linear_start(linear, self, f) == GIC_OK; ++move) {
+        double change = 0;
+        if (code->contacts->press(self, 0, tape_array(self, code->state_offset), press) != GIC_OK)
+            return false;
+        if (press[k] > 0)
+            return true;
+        for (int j = 0; j < linear->places; ++j) {
+            linear_direction(linear, self, LINEAR_MOTION, j);
+            if (linear_slope(linear, self, LINEAR_PRESS, 0) != GIC_OK)
+                return false;
+            gradient[j] = linear->drate[code->slow_count + code->fast_count + k];
+        }
+        memset(z, 0, sizeof z);
+        give_way(s, point, gradient, z);
+        for (int j = 0; j < linear->places; ++j)
+            change += gradient[j] * z[j];
+        for (int j = 0; j < linear->places; ++j)
+            z[j] *= change > 0 ? (depth - press[k]) / change : 0;
+        linear_move(linear, self, z);
     }
+    return false;
+}
+
+/* States in which stops press that don't as the model is set up, one after the other; and the static equilibrium where
+ * wheels hang in the air then, for nothing is known of their tires without a load. */
+static void add_contacts(Splitter *s, const Instance *drawn)
+{
+    static const double beyond = 1e-6; /* m or rad */
+    const gic_model *code = &s->linear->engine->code;
+    Instance *self = (Instance *)(void *)instance_new(s->pool, s->engine);
+    double press[code->contact_count + 1];
+    bool hangs = false;
+    memcpy(self, drawn, code->size);
+    if (!code->contacts || code->contacts->press(self, 0, tape_array(self, code->state_offset), press) != GIC_OK)
+        return;
+    ContactSite site;
+    const Point *point = s->points; /* the one at set-up */
+    for (int k = 0; k < code->contact_count && model_contact(s->model, k, &site); ++k) {
+        if (press[k] > 0)
+            continue;
+        hangs = hangs || site.wheel;
+        memcpy(self, drawn, code->size);
+        if (site.stop &&
+            touch(s, point, self, k, beyond + (site.stop->fade ? law_number(site.stop->fade, s->model) : 0)))
+            add_point(s, s->linear, self);
+    }
+    Messages unheard = {0};
+    if (hangs)
+        (void)caught(&unheard, add_equilibrium, s);
+    messages_clear(&unheard);
 }
 
 /* ---- groups ----------------------------------------------------------------------------------------------- */
@@ -461,9 +524,13 @@ const Splitting *stiff_states(Pool *pool, const Model *model, Solve solve, Recov
 {
     const Engine *engine =
         engine_open(pool, "tape", model, &(EngineOptions){.solve = solve, .recovery = recovery, .quiet = true});
-    Splitter s = {.pool = pool, .model = model, .linear = linear_open(pool, engine), .solve = solve, .step = step};
+    Splitter s = {.pool = pool,
+                  .model = model,
+                  .engine = engine,
+                  .linear = linear_open(pool, engine),
+                  .solve = solve,
+                  .step = step};
     Instance *self = (Instance *)(void *)instance_new(pool, engine);
-    Messages unheard = {0};
     const int status = engine->code->setup(self);
     if (status != GIC_OK)
         diag_fail((Place){model->source, 0, 0}, NULL, "the model can't be set up: %s",
@@ -471,10 +538,8 @@ const Splitting *stiff_states(Pool *pool, const Model *model, Solve solve, Recov
     gsl_errors_return();
     find_groups(&s);
     s.weighed = rate_columns_weigh(pool, s.linear->engine->formulation);
-    (void)caught(&unheard, add_equilibrium, &s);
-    messages_clear(&unheard);
-    add_stops(&s, self);
     add_point(&s, s.linear, self);
+    add_contacts(&s, self);
     for (const Point *point = s.points; point; point = point->next)
         count_shares(&s, point);
     choose(&s, s.share, least);

@@ -9,9 +9,9 @@
 #include "subset/method.h"
 
 /* For steps of `step` s with code that solves and recovers in these ways: the states that have a share in stiff motions
- * about the state at set-up, about the static equilibrium and about the ends of stops of coordinates, and those without
- * which imex would not be stable there. It follows from the model and the step alone. Ends in diag_fail where the model
- * can't be set up. */
+ * about the state at set-up, about states in which stops press, and about the static equilibrium where wheels hang in
+ * the air at set-up, and those without which imex would not be stable there. It follows from the model and the step
+ * alone. Ends in diag_fail where the model can't be set up. */
 const Splitting *stiff_states(Pool *pool, const Model *model, Solve solve, Recovery recovery, double step);
 
 #endif
