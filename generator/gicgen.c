@@ -258,6 +258,7 @@ typedef struct Setting {
     const Facts *facts;
     const Validation *validation;
     const Scene *scene;
+    const Splitting *splitting; /* of implicit steps; NULL: all states are implicit */
 } Setting;
 
 static const Formulation *formulation_of(Pool *pool, const Model *model, const Sequence *sequence,
@@ -300,8 +301,7 @@ static void write_code(Pool *pool, const Model *model, const Sequence *sequence,
     style.implicit = options->implicit;
     style.exponential = options->exponential;
     style.spread = options->spread;
-    if (options->stiff > 0)
-        style.splitting = stiff_states(pool, setting->drawn, options->solve, options->recovery, options->stiff);
+    style.splitting = setting->splitting;
     bool batch = options->task == TASK_BATCH;
     const char *path = options->output ? options->output : pool_print(pool, batch ? "%s_batch.c" : "%s.c", model->name);
     if (strcmp(path, "-") && !path_ends(path, ".c"))
@@ -349,6 +349,7 @@ static void write_fmu(Pool *pool, const Model *model, const Sequence *sequence, 
     style.implicit = options->implicit || (setting->scene && scene_implicit(setting->scene));
     style.exponential = options->exponential || (setting->scene && setting->scene->method == GIC_EXP3);
     style.spread = options->spread || (setting->scene && setting->scene->spread);
+    style.splitting = setting->splitting;
     fmu_write(pool, options->fmi, formulation, setting->scene, &style, options->templates, path);
 }
 
@@ -410,6 +411,10 @@ int main(int count, char **word)
             setting.validation = scene_validation(pool, model, scene);
         }
     }
+    if (options.stiff > 0)
+        setting.splitting = stiff_states(pool, model, options.solve, options.recovery, options.stiff);
+    else if (setting.scene && options.task == TASK_FMU)
+        setting.splitting = scene_splitting(pool, model, setting.scene, options.solve, options.recovery);
     const Sequence *sequence = sequence_find(pool, model);
     model = model_assemble(pool, model, sequence);
     Text text = {.pool = pool};

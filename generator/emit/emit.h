@@ -24,6 +24,7 @@ typedef struct Constants {
 typedef struct Splitting {
     const bool *implicit; /* [states] */
     const char *told;     /* lines for people: which these are, and why */
+    const char *summary;  /* one of them: how many, and the fastest motion that is left explicit */
 } Splitting;
 
 /* How the text looks. No style changes the order of operations: results are the same to the last bit. */

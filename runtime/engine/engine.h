@@ -19,6 +19,7 @@ typedef struct Sequence Sequence;           /* sequence/sequence.h */
 typedef struct Facts Facts;                 /* vehicle/vehicle.h */
 typedef struct Embedded Embedded;           /* emit/emit.h */
 typedef struct Batch Batch;                 /* emit/emit.h */
+typedef struct Splitting Splitting;         /* emit/emit.h */
 typedef struct CodeMemory CodeMemory;       /* report/report.h */
 typedef struct ContactPieces ContactPieces; /* compare/contact_pieces.h */
 
@@ -76,16 +77,17 @@ typedef struct Engine {
 typedef struct EngineOptions {
     Solve solve;
     Recovery recovery;
-    int lanes;            /* largest number of lanes of the engine cc; 0: scalar code */
-    const char *compiler; /* command, perhaps with options */
-    const char *flags;    /* more options, after the default ones */
-    const char *object;   /* a copy of the compiled object goes there; NULL: nowhere */
-    bool implicit;        /* code that takes implicit steps too; not with facts and lanes */
-    bool exponential;     /* with it: exponential steps, too */
-    bool spread;          /* with it: a Jacobian may be made by shares */
-    bool exact;           /* with it: gic_implicit.jacobian has all derivatives of the rates, for `bdf` */
-    bool single;          /* the flags make the code single precision; the caller handles its numbers */
-    const Facts *facts;   /* generated code for one scene; NULL: for all. Interpreted engines know no facts */
+    int lanes;                  /* largest number of lanes of the engine cc; 0: scalar code */
+    const char *compiler;       /* command, perhaps with options */
+    const char *flags;          /* more options, after the default ones */
+    const char *object;         /* a copy of the compiled object goes there; NULL: nowhere */
+    bool implicit;              /* code that takes implicit steps too; not with facts and lanes */
+    bool exponential;           /* with it: exponential steps, too */
+    bool spread;                /* with it: a Jacobian may be made by shares */
+    const Splitting *splitting; /* with it: which states are implicit; NULL: all */
+    bool exact;                 /* with it: gic_implicit.jacobian has all derivatives of the rates, for `bdf` */
+    bool single;                /* the flags make the code single precision; the caller handles its numbers */
+    const Facts *facts;         /* generated code for one scene; NULL: for all. Interpreted engines know no facts */
     const struct Validation
         *validation; /* with facts: states of that scene, generator/validate/validate.h; NULL: none */
     bool quiet;      /* print no notes */

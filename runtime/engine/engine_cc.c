@@ -248,6 +248,7 @@ static Build build_new(Pool *pool, const Formulation *formulation, const EngineO
     style.implicit = options->implicit;
     style.exponential = options->exponential;
     style.spread = options->spread;
+    style.splitting = options->splitting;
     style.exact = options->exact;
     generate(pool, formulation, &style, NULL, "model.h", &b.c, &b.h);
     b.words = compiler_words(pool, options->compiler, build_flags, pool_print(pool, "%s %s", flags, options->flags),

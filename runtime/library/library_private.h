@@ -73,8 +73,9 @@ const Model *model_for(const OpenModel *open, Pool *pool);
 const Model *model_once(OpenModel *open, Pool *pool);
 /* True if its `integrator` has implicit steps: code of instances and batches has them then. */
 bool model_implicit(const OpenModel *model);
-/* Code for one vehicle in any scene. spread: if it has implicit steps, with Jacobians by shares. Ends in diag_fail. */
-const Engine *model_code(const OpenModel *model, Pool *pool, bool spread);
+/* Code for one vehicle in any scene; if it has implicit steps, as `wanted` has them, NULL: all states implicit,
+ * Jacobians at once. Ends in diag_fail. */
+const Engine *model_code(const OpenModel *model, Pool *pool, const Scene *wanted);
 /* The model's code for any scene, compiled by the first call. */
 int model_engine(const gicl_library *library, OpenModel *model, gicl_messages *said);
 void model_keep(OpenModel *model);

@@ -9,6 +9,7 @@
 #include "library/library_private.h"
 #include "read/read.h"
 #include "run/engines.h"
+#include "run/stiff_states.h"
 #include "scene/scene.h"
 #include "sequence/sequence.h"
 #include "subset/subset.h"
@@ -219,7 +220,7 @@ bool model_implicit(const OpenModel *model)
     return model->integrator && method_implicit(integrator_method(model->integrator));
 }
 
-const Engine *model_code(const OpenModel *model, Pool *pool, bool spread)
+const Engine *model_code(const OpenModel *model, Pool *pool, const Scene *wanted)
 {
     const char *name = strcmp(model->engine_name, "auto") != 0 ? model->engine_name : engines[0];
     bool own = false;
@@ -231,15 +232,18 @@ const Engine *model_code(const OpenModel *model, Pool *pool, bool spread)
     options.lanes = 0; /* of runs alone */
     options.implicit = model_implicit(model) && engine_has_implicit(name);
     options.exponential = options.implicit && integrator_method(model->integrator) == GIC_EXP3;
-    options.spread = options.implicit && spread;
-    return engine_open(pool, name, model_for(model, pool), &options);
+    options.spread = options.implicit && wanted && wanted->spread;
+    const Model *own_model = model_for(model, pool);
+    if (options.implicit && wanted)
+        options.splitting = scene_splitting(pool, own_model, wanted, options.solve, options.recovery);
+    return engine_open(pool, name, own_model, &options);
 }
 
 static void open_engine(void *context)
 {
     OpenModel *model = context;
     Pool *pool = pool_new();
-    model->engine = model_code(model, pool, false);
+    model->engine = model_code(model, pool, NULL);
     model->engine_pool = pool;
 }
 

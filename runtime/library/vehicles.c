@@ -8,6 +8,7 @@
 #include "gic_runtime.h"
 #include "library/library_private.h"
 #include "run/engines.h"
+#include "run/stiff_states.h"
 #include "run/run.h"
 #include "scene/scene.h"
 
@@ -37,18 +38,21 @@ static const Scene *read_scene(Pool *pool, const OpenModel *open, const char *pa
 }
 
 /* Code for all of them at once. */
-static const Engine *open_lanes(Pool *pool, const Making *making, bool spread, const gic_batch_model **many)
+static const Engine *open_lanes(Pool *pool, const Making *making, const Scene *wanted, const gic_batch_model **many)
 {
     const OpenModel *model = making->model;
     const Batch batch = {making->count, making->lanes};
     const char *why;
     EngineOptions options = model->options;
     options.implicit = model_implicit(model);
-    options.spread = spread;
+    options.spread = wanted && wanted->spread;
     if (model->integrator && integrator_method(model->integrator) == GIC_EXP3)
         diag_fail((Place){model->model->source, 0, 0}, "let them make their steps one after another: lanes 1",
                   "code for many vehicles at once has no exponential steps");
-    const Engine *engine = engine_batch(pool, model_for(model, pool), &options, &batch, IN_LANES_AS_ALONE, many, &why);
+    const Model *own = model_for(model, pool);
+    if (wanted)
+        options.splitting = scene_splitting(pool, own, wanted, options.solve, options.recovery);
+    const Engine *engine = engine_batch(pool, own, &options, &batch, IN_LANES_AS_ALONE, many, &why);
     if (!engine)
         diag_fail((Place){model->model->source, 0, 0}, "let them make their steps one after another: lanes 1",
                   "no code for many vehicles at once: %s", why);
@@ -63,8 +67,9 @@ static void make(void *context)
     const Scene *scene = read_scene(pool, making->model, making->scene);
     const gic_batch_model *many = NULL;
     const bool spread = scene && scene->spread && model_implicit(making->model);
-    const Engine *engine = making->lanes > 1 ? open_lanes(pool, making, spread, &many)
-                           : spread          ? model_code(making->model, pool, true)
+    const Scene *wanted = scene && (scene->spread || scene->stiff) && model_implicit(making->model) ? scene : NULL;
+    const Engine *engine = making->lanes > 1 ? open_lanes(pool, making, wanted, &many)
+                           : wanted          ? model_code(making->model, pool, wanted)
                                              : making->model->engine;
     if (spread)
         engine_check_shares(engine, scene);

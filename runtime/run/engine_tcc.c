@@ -94,6 +94,7 @@ static const char *jit_text(Pool *pool, const Model *model, const EngineOptions 
     style.implicit = options->implicit;
     style.exponential = options->exponential;
     style.spread = options->spread;
+    style.splitting = options->splitting;
     style.exact = options->exact;
     generate(pool, formulation, &style, NULL, NULL, &c, &h);
     templates_check(pool, NULL, (const Insertions *const[]){&jit_points, NULL});

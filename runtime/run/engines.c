@@ -8,6 +8,7 @@
 #include "model/model.h"
 #include "run/engines.h"
 #include "run/stepper.h"
+#include "run/stiff_states.h"
 #include "tape/tape.h"
 
 #include <string.h>
@@ -91,6 +92,9 @@ const Engine *engine_open_run(Pool *pool, const char *name, const Model *model, 
     own.implicit = scene_implicit(scene) || own.exact;
     own.exponential = scene->method == GIC_EXP3;
     own.spread = scene->spread;
+    own.splitting = scene_splitting(pool, model, scene, options->solve, options->recovery);
+    if (own.splitting && !options->quiet)
+        diag_note(pool_print(pool, "%s: note: %s\n", scene->source->path, own.splitting->summary));
     stepper_need(scene->method);
     if (scene_implicit(scene))
         check_implicit(pool, name, scene);

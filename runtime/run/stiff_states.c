@@ -498,19 +498,32 @@ static void tell_mode(Text *out, const Splitter *s, const char *what, const Mode
     modes_print_shares(out, s->linear, mode);
 }
 
+static const char *summary(const Splitter *s, const bool *implicit)
+{
+    const gic_model *code = &s->linear->engine->code;
+    const int count = code->slow_count + code->fast_count;
+    Text text = {.pool = s->pool};
+    int chosen = 0;
+    for (int i = 0; i < count; ++i)
+        chosen += implicit[i];
+    text_print(&text, "in steps of %.6g s %d of %d states are implicit", s->step, chosen, count);
+    if (s->others)
+        text_print(&text, "; of motions that are not stiff the fastest has |lambda| step = %.3g",
+                   s->step * size_of(&s->left));
+    return text.s;
+}
+
 static const char *tell(const Splitter *s, const bool *implicit)
 {
     const gic_model *code = &s->linear->engine->code;
     const int count = code->slow_count + code->fast_count;
     Text text = {.pool = s->pool}, *out = &text;
-    int chosen = 0;
+    int named = 0;
+    text_print(out, "Implicit states, for steps of %.6g s:", s->step);
     for (int i = 0; i < count; ++i)
-        chosen += implicit[i];
-    text_print(out, "In steps of %.6g s %d of %d states are implicit%s", s->step, chosen, count, chosen ? ":" : "");
-    for (int i = 0, named = 0; i < count; ++i)
         if (implicit[i])
-            text_print(out, "%s%s", named++ ? ", " : " ", code->state[i].name);
-    text_print(out, "\n");
+            text_print(out, "%s %s", named++ ? "," : "", code->state[i].name);
+    text_print(out, named ? "\n" : " none\n");
     if (s->stiff)
         tell_mode(out, s, "The fastest stiff motion:", &s->fastest);
     if (s->stiff > 1)
@@ -551,5 +564,12 @@ const Splitting *stiff_states(Pool *pool, const Model *model, Solve solve, Recov
     Splitting *splitting = pool_alloc(pool, sizeof *splitting);
     splitting->implicit = in_state(&s);
     splitting->told = tell(&s, splitting->implicit);
+    splitting->summary = summary(&s, splitting->implicit);
     return splitting;
+}
+
+const Splitting *scene_splitting(Pool *pool, const Model *model, const Scene *scene, Solve solve, Recovery recovery)
+{
+    const bool splits = scene->stiff && scene_implicit(scene) && scene->method != GIC_EXP3;
+    return splits ? stiff_states(pool, model, solve, recovery, scene->step) : NULL;
 }

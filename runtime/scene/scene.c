@@ -255,6 +255,21 @@ static void read_spread(Reader *reader, const Item *item, bool replaced)
                   "spread_jacobian needs a Jacobian that is kept for 2 steps or more, which share its work");
 }
 
+static void read_implicit(Reader *reader, const Item *item, bool replaced)
+{
+    Scene *scene = reader->scene;
+    const char *which = doc_word(item, "implicit");
+    const bool takes = scene->automatic || (scene_implicit(scene) && scene->method != GIC_EXP3);
+    if (strcmp(which, "all") && strcmp(which, "stiff"))
+        diag_fail(item->at, "write `all` or `stiff`", "implicit is which states implicit steps treat so, not '%s'",
+                  which);
+    if (!takes && !replaced)
+        diag_fail(item->at, "remove it, or write `integrator: ros2`, `ros3` or `imex`",
+                  scene->method == GIC_EXP3 ? "exp3 treats all states alike" : "%s has no implicit steps of this kind",
+                  integrator_name(scene->method));
+    scene->stiff = takes && !strcmp(which, "stiff");
+}
+
 static void read_time(Reader *reader, const Item *root)
 {
     Scene *scene = reader->scene;
@@ -659,8 +674,8 @@ static const Scene *scene_of(Pool *pool, const Item *root, const char *path, con
     if (other && !doc_find(root, "gicscene"))
         diag_fail(other->at, "name the model first, then the scene", "this is a model, where a scene is wanted");
     CHECK_KEYS(root, "the scene", "gicscene", "description", "duration", "step", "integrator", "tolerance", "ratio",
-               "steady", "sleep", "locate", "most_work", "keep_jacobian", "spread_jacobian", "massless", "base",
-               "driven", "posts", "output_step", "initial", "road", "inputs", "input_file", "driver", "course",
+               "steady", "sleep", "locate", "most_work", "keep_jacobian", "spread_jacobian", "implicit", "massless",
+               "base", "driven", "posts", "output_step", "initial", "road", "inputs", "input_file", "driver", "course",
                "parameters", "outputs", "plot", "units", "until", "when");
     scene->source = root->at.source;
     scene->root = root;
@@ -679,6 +694,8 @@ static const Scene *scene_of(Pool *pool, const Item *root, const char *path, con
         read_keep(&reader, doc_find(root, "keep_jacobian"), integrator);
     if (doc_find(root, "spread_jacobian"))
         read_spread(&reader, doc_find(root, "spread_jacobian"), integrator);
+    if (doc_find(root, "implicit"))
+        read_implicit(&reader, doc_find(root, "implicit"), integrator);
     read_time(&reader, root);
     read_skips(&reader, root, integrator);
     scene->parameter = pool_alloc(pool, sizeof(double) * (size_t)(model->tunables + 1));

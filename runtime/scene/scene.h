@@ -56,7 +56,8 @@ typedef struct Scene {
     int most_work;                      /* gic_head.most; 0: no bound */
     int32_t keep;                       /* of implicit steps: steps with one Jacobian */
     bool spread;                        /* these steps make the next one by shares */
-    int locate;                         /* gic_head.locate: constant steps are made in parts at contacts */
+    bool stiff; /* implicit steps treat states with a share in stiff motions implicitly, alone */
+    int locate; /* gic_head.locate: constant steps are made in parts at contacts */
     double position[3], euler[4], velocity[3], angular_velocity[3]; /* of the base, free base only */
     bool along, equilibrium; /* the velocity is a `speed` along the base's x axis; start in static equilibrium */
     double speed;

@@ -17,6 +17,7 @@
 #include "run/run.h"
 #include "scene/scene.h"
 #include "sweep/report.h"
+#include "run/stiff_states.h"
 #include "sweep/sweep.h"
 
 #include <dlfcn.h>
@@ -53,6 +54,7 @@ static const Engine *open_lanes_or_one(Pool *pool, const SweepRequest *request, 
     code.implicit = scene_implicit(scene);
     code.exponential = scene->method == GIC_EXP3;
     code.spread = scene->spread;
+    code.splitting = scene_splitting(pool, model, scene, code.solve, code.recovery);
     if (request->engine && !engine_has_implicit(request->engine))
         scene_no_implicit_engine(pool, scene, request->engine);
     if (request->engine)
