@@ -101,19 +101,45 @@ static double size_of(const Mode *mode)
     return hypot(mode->real, mode->imaginary);
 }
 
+/* Shares of groups in a motion: the larger one of participation, which tells by how much a state makes the motion what
+ * it is, and, of places, of kinetic energy, which tells by how much the motion moves it: what is explicit is thrown
+ * about by forces that are not resolved. */
+static void find_shares(const Splitter *s, const Point *point, const Mode *mode, double *share)
+{
+    const int places = s->linear->places, count = s->linear->count;
+    double energy[s->groups + 1], all = 0, of_places = 0;
+    memset(energy, 0, sizeof energy);
+    memset(share, 0, (size_t)s->groups * sizeof *share);
+    for (int i = 0; i < count - places; ++i)
+        share[s->group[i < places ? i : i + places]] += mode->share[i];
+    for (int i = 0; i < places; ++i) {
+        of_places += mode->share[i];
+        for (int j = 0; j < places; ++j)
+            if (s->group[j] == s->group[i])
+                energy[s->group[i]] +=
+                    point->M[count * (places + i) + places + j] * s->linear->reach[i] * s->linear->reach[j] *
+                    (mode->shape[i] * mode->shape[j] + mode->shape[places + i] * mode->shape[places + j]);
+    }
+    for (int g = 0; g < s->groups; ++g)
+        all += energy[g];
+    for (int g = 0; g < s->groups && all > 0; ++g)
+        share[g] = fmax(share[g], of_places * energy[g] / all);
+}
+
 /* Add up the shares in the stiff motions of a point. */
 static void count_shares(Splitter *s, const Point *point)
 {
-    const int places = s->linear->places, numbers = s->linear->count - places;
-    double share[s->groups + 1];
-    memset(share, 0, sizeof share);
+    double share[s->groups + 1], sum[s->groups + 1];
+    memset(sum, 0, sizeof sum);
     for (int k = 0; k < point->modes->count; ++k) {
         const Mode *mode = &point->modes->mode[k];
         bool stiff = is_stiff(s, mode);
         for (int j = 0; j < point->modes->count && !stiff; ++j)
             stiff = is_stiff(s, &point->modes->mode[j]) && near(mode, &point->modes->mode[j]);
-        for (int i = 0; i < numbers && stiff; ++i)
-            share[s->group[i < places ? i : i + places]] += mode->share[i];
+        if (stiff)
+            find_shares(s, point, mode, share);
+        for (int g = 0; g < s->groups && stiff; ++g)
+            sum[g] += share[g];
         if (!stiff && (!s->others++ || size_of(mode) > size_of(&s->left)))
             s->left = *mode;
         if (stiff && (!s->stiff || size_of(mode) < size_of(&s->slowest)))
@@ -122,7 +148,7 @@ static void count_shares(Splitter *s, const Point *point)
             s->fastest = *mode;
     }
     for (int g = 0; g < s->groups; ++g)
-        s->share[g] = fmax(s->share[g], share[g]);
+        s->share[g] = fmax(s->share[g], sum[g]);
 }
 
 /* Choose groups by a measure: those at `limit` or above, and those as good as there. */
