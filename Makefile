@@ -150,7 +150,7 @@ $(BUILD)/planted/%.o: %.c
 
 $(BUILD)/check/gicgen_planted: $(BUILD)/generator/gicgen.o $(planted_objects) $(archive)
 	@mkdir -p $(@D)
-	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lyaml -lminizip -lm
+	$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LIBRARIES)
 
 $(BUILD)/check/gicrun_planted: $(BUILD)/runtime/gicrun/gicrun.o $(planted_objects) $(archive)
 	@mkdir -p $(@D)

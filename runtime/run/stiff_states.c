@@ -5,9 +5,11 @@
  *
  *     r^2 - 4/3 (1 + z) r + (1 + 2 z) / 3 = 0,   z = lambda step.
  *
- * It is stable down to z = -4/3 on the real axis, where r = -1, and grows by z^4 on the imaginary axis, so that it
- * needs some damping; up to |z| = 1/2 its eigenvalue log r / step is right to 0.1 (tests/bench/tried.md has the errors
- * of runs). States that participate in stiff motions are implicit. That this is enough is then checked by the
+ * It is stable down to z = -4/3 on the real axis, where r = -1. On the imaginary axis it grows by 3/4 |z|^4 in a step,
+ * so that a vibration needs damping, of |z| = 1/2 a tenth of the critical one. Eigenvalues log r / step are off by 0.18
+ * to 0.34 of |lambda| there, wherefore motions from there on count as stiff (tests/bench/tried.md has errors of runs).
+ *
+ * States that have a share in stiff motions are implicit. That this is enough for stability is then checked by the
  * eigenvalues of two steps of imex in matrices, with A where it is exact and with what is left of A in the implicit
  * part; where they grow, the states that move most in what grows are implicit, too. */
 #include "base/catch.h"

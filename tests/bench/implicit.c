@@ -2,7 +2,8 @@
  * implicit.sh: explicit and implicit steps of one model by turns, with its code and with its code in lanes, time
  * against error: the inputs at rest but for one, from the start of set-up; and the longest step, each the least of all
  * rounds, so that interruptions are left out, without the first ones, which make whole Jacobians, and once more without
- * those in which an evaluation checks itself. -DMODEL: the model's name; -DLANES: that of the same model in lanes;
+ * those in which an evaluation checks itself. With -DSPLIT the second code is one of which some states are explicit
+ * (split.sh). -DMODEL: the model's name; -DLANES: that of the same model in lanes;
  * -DINPUT: the index of an input, -DVALUE: its value. */
 #include <math.h>
 #include <stdio.h>
@@ -24,31 +25,48 @@ static const struct Way {
     gic_method method;
     double step;
     int keep, spread, lanes;
-} way[] = {{"ab3", GIC_AB3, 0.00025, 0, 0, 0},
-           {"ab3, lanes", GIC_AB3, 0.00025, 0, 0, 1},
-           {"rk4", GIC_RK4, 0.001, 0, 0, 0},
-           {"rk4, lanes", GIC_RK4, 0.001, 0, 0, 1},
-           {"ros2", GIC_ROS2, 0.001, 1, 0, 0},
-           {"ros2, one Jacobian in 4", GIC_ROS2, 0.001, 4, 0, 0},
-           {"ros2, one in 16", GIC_ROS2, 0.001, 16, 0, 0},
-           {"ros2, one in 16, lanes", GIC_ROS2, 0.001, 16, 0, 1},
-           {"ros2, shares", GIC_ROS2, 0.001, 16, 1, 0},
-           {"ros2, shares, lanes", GIC_ROS2, 0.001, 16, 1, 1},
-           {"ros2, shares of 32", GIC_ROS2, 0.001, 32, 1, 0},
-           {"ros2, shares of 32, lanes", GIC_ROS2, 0.001, 32, 1, 1},
-           {"ros2", GIC_ROS2, 0.002, 1, 0, 0},
-           {"ros3", GIC_ROS3, 0.001, 1, 0, 0},
-           {"ros3", GIC_ROS3, 0.005, 1, 0, 0},
-           {"ros3, lanes", GIC_ROS3, 0.005, 1, 0, 1},
-           {"imex, one in 4", GIC_IMEX, 0.001, 4, 0, 0},
-           {"imex, one in 16", GIC_IMEX, 0.001, 16, 0, 0},
-           {"imex, one in 16, lanes", GIC_IMEX, 0.001, 16, 0, 1},
-           {"imex, one in 16", GIC_IMEX, 0.002, 16, 0, 0},
-           {"exp3", GIC_EXP3, 0.001, 0, 0, 0},
-           {"exp3, lanes", GIC_EXP3, 0.001, 0, 0, 1},
-           {"exp3", GIC_EXP3, 0.002, 0, 0, 0},
-           {"imex, shares", GIC_IMEX, 0.001, 16, 1, 0},
-           {"imex, shares, lanes", GIC_IMEX, 0.001, 16, 1, 1}};
+} way[] = {
+#ifdef SPLIT
+    {"imex", GIC_IMEX, 0.001, 1, 0, 0},
+    {"imex, split", GIC_IMEX, 0.001, 1, 0, 1},
+    {"imex, one in 4", GIC_IMEX, 0.001, 4, 0, 0},
+    {"imex, one in 4, split", GIC_IMEX, 0.001, 4, 0, 1},
+    {"imex, one in 16", GIC_IMEX, 0.001, 16, 0, 0},
+    {"imex, one in 16, split", GIC_IMEX, 0.001, 16, 0, 1},
+    {"imex, shares", GIC_IMEX, 0.001, 16, 1, 0},
+    {"imex, shares, split", GIC_IMEX, 0.001, 16, 1, 1},
+    {"ros2, one in 16", GIC_ROS2, 0.001, 16, 0, 0},
+    {"ros2, one in 16, split", GIC_ROS2, 0.001, 16, 0, 1},
+    {"ros3", GIC_ROS3, 0.001, 1, 0, 0},
+    {"ros3, split", GIC_ROS3, 0.001, 1, 0, 1},
+#else
+    {"ab3", GIC_AB3, 0.00025, 0, 0, 0},
+    {"ab3, lanes", GIC_AB3, 0.00025, 0, 0, 1},
+    {"rk4", GIC_RK4, 0.001, 0, 0, 0},
+    {"rk4, lanes", GIC_RK4, 0.001, 0, 0, 1},
+    {"ros2", GIC_ROS2, 0.001, 1, 0, 0},
+    {"ros2, one Jacobian in 4", GIC_ROS2, 0.001, 4, 0, 0},
+    {"ros2, one in 16", GIC_ROS2, 0.001, 16, 0, 0},
+    {"ros2, one in 16, lanes", GIC_ROS2, 0.001, 16, 0, 1},
+    {"ros2, shares", GIC_ROS2, 0.001, 16, 1, 0},
+    {"ros2, shares, lanes", GIC_ROS2, 0.001, 16, 1, 1},
+    {"ros2, shares of 32", GIC_ROS2, 0.001, 32, 1, 0},
+    {"ros2, shares of 32, lanes", GIC_ROS2, 0.001, 32, 1, 1},
+    {"ros2", GIC_ROS2, 0.002, 1, 0, 0},
+    {"ros3", GIC_ROS3, 0.001, 1, 0, 0},
+    {"ros3", GIC_ROS3, 0.005, 1, 0, 0},
+    {"ros3, lanes", GIC_ROS3, 0.005, 1, 0, 1},
+    {"imex, one in 4", GIC_IMEX, 0.001, 4, 0, 0},
+    {"imex, one in 16", GIC_IMEX, 0.001, 16, 0, 0},
+    {"imex, one in 16, lanes", GIC_IMEX, 0.001, 16, 0, 1},
+    {"imex, one in 16", GIC_IMEX, 0.002, 16, 0, 0},
+    {"exp3", GIC_EXP3, 0.001, 0, 0, 0},
+    {"exp3, lanes", GIC_EXP3, 0.001, 0, 0, 1},
+    {"exp3", GIC_EXP3, 0.002, 0, 0, 0},
+    {"imex, shares", GIC_IMEX, 0.001, 16, 1, 0},
+    {"imex, shares, lanes", GIC_IMEX, 0.001, 16, 1, 1}
+#endif
+};
 enum { WAYS = sizeof way / sizeof *way };
 
 static MODEL car;

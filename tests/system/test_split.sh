@@ -134,6 +134,7 @@ for n in 1 2 4; do
     check "2 of 6 states are implicit at 4 ms / $n" says '2 of 6 states are implicit'
     eval "off$n=\$(apart order.csv exact.csv)"
 done
+# shellcheck disable=SC2154  # set by eval
 for n in 1 2; do
     found=$(eval "awk -v a=\${off$n:-0} -v b=\${off$((2 * n)):-0} 'BEGIN { print (b > 0 ? log(a / b) / log(2) : 0) }'")
     check "order with a part of the states implicit: $found ($off1 $off2 $off4)" within 1.7 "$found"
@@ -153,6 +154,13 @@ kick light.veh y 0.005 1e-6
 kick equal.veh y 0.005 1e-4
 kick tiny.veh y 0.005 1e-6
 kick pair.veh y 0.005 1e-6
+# the same with rows of velocities that are multiplied by masses
+for model in light equal pair; do
+    scene 1 0.005 'integrator: imex' 'implicit: stiff' 'initial: {coordinates: {y: 0.001}}' 'outputs: [y.value]' >kick.scene
+    run -q --solve reduced $model.veh kick.scene -o kick.csv
+    found=$(tail -n 1 kick.csv | awk -F, '{ print ($2 < 0 ? -$2 : $2) }')
+    check "$model.veh, reduced, after a kick: ${found:-none}" within "${found:-1}" 1e-6
+done
 # into the stop with 1 m/s: as with all states implicit
 for way in stiff all; do
     scene 1 0.001 'integrator: imex' "implicit: $way" 'initial: {rates: {x: 1}}' 'outputs: [x]' >hit.scene
