@@ -4,7 +4,7 @@
 # every bit of the state is the host's, with elementary functions of the test's own on both; and how many instructions a step takes, with those of
 # newlib. QEMU's `-icount shift=0` lets an instruction take 1 ns, so a timer counts them, to 40; instructions are not cycles. Judged by a loop of known
 # length, by the same counts in another run, and by what the methods have in common. The vehicle is hmmwv_vehicle with
-# half an accelerator, or what environment variables name: MODEL, INPUT and its VALUE.
+# half an accelerator, or what environment variables name: MODEL, INPUT and its VALUE; with STIFF, a step in s, states without a share in motions that are stiff then are explicit.
 gicgen=$1
 model=${MODEL:-hmmwv_vehicle}
 input=${INPUT:-ACCELERATOR}
@@ -15,7 +15,8 @@ models=$(cd "$(dirname "$0")/../../models" && pwd)
 # shellcheck source=tests/lib/checking.sh
 . "$(dirname "$0")/../lib/checking.sh"
 
-"$gicgen" --implicit --spread-jacobian "$models/$model.veh" -o "$work/$model.c" || exit 1
+# shellcheck disable=SC2086  # a list of words
+"$gicgen" --implicit --spread-jacobian ${STIFF:+--stiff $STIFF} "$models/$model.veh" -o "$work/$model.c" || exit 1
 cp "$runtime"/gic_runtime.[ch] "$targets"/* "$work/"
 cd "$work" || exit 1
 upper=$(echo "$model" | tr '[:lower:]' '[:upper:]')
