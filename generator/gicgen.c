@@ -231,9 +231,9 @@ static Options read_options(int count, char **word)
                     "vehicles of a batch have derivatives beside it (models/DERIVATIVES.md, Many vehicles)",
                     NULL);
     if ((options.spread || options.exponential || options.stiff > 0) && !options.implicit)
-        usage_error("it goes with --implicit", options.spread        ? "--spread-jacobian"
-                                               : options.exponential ? "--exponential"
-                                                                     : "--stiff");
+        usage_error("--implicit is missing, which it goes with", options.spread        ? "--spread-jacobian"
+                                                                 : options.exponential ? "--exponential"
+                                                                                       : "--stiff");
     if (options.stiff > 0 && options.exponential)
         usage_error("exponential steps treat all states alike: leave out --exponential or", "--stiff");
     if (options.implicit && !fmu && (options.task != TASK_GENERATE || options.scene))

@@ -584,9 +584,8 @@ const Splitting *stiff_states(Pool *pool, const Model *model, Solve solve, Recov
     for (const Point *point = s.points; point; point = point->next)
         count_shares(&s, point);
     choose(&s, s.share, least);
-    for (const Point *point = s.points; point; point = point->next)
-        while (!all_chosen(&s) && !is_stable(&s, point))
-            ;
+    for (const Point *point = s.points; point && !all_chosen(&s);)
+        point = is_stable(&s, point) ? point->next : s.points; /* a choice that has grown is another one everywhere */
     if (!s.points)
         memset(s.chosen, true, (size_t)s.groups);
     Splitting *splitting = pool_alloc(pool, sizeof *splitting);
