@@ -74,9 +74,22 @@ static bool moves_still(const void *context, Element element)
     }
 }
 
+/* Do coordinates alone move a subset's bodies, all of which its S has columns of? Not its carrier, nor the geometry. */
+static bool moves_alone(const Generation *g, const Subset *subset)
+{
+    bool alone = subset->carrier == BODY_BASE && !(subset->class >= 0 && g->plan->formula[subset->class]->derived);
+    for (int i = 0; i < subset->knowns && alone; ++i)
+        alone = moves_alone(g, &g->sequence->subset[g->sequence->body_subset[subset->known[i]]]);
+    return alone;
+}
+
 const Block *class_tangent(const Generation *g, int class, bool still)
 {
-    return subset_tangent(g->plan->formula[class], !g->model->free_base, g->model->tuning, still);
+    const Class *all = &g->sequence->class[class];
+    bool alone = true;
+    for (int i = 0; i < all->members; ++i)
+        alone = alone && moves_alone(g, &g->sequence->subset[all->member[i]]);
+    return subset_tangent(g->plan->formula[class], !g->model->free_base, g->model->tuning, still, alone);
 }
 
 const Block *whole_tangent(const Generation *g, const Block *block)

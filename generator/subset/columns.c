@@ -129,62 +129,12 @@ static void residuals(const Formula *f, bool free_base, int deps, Ex *tau)
         add_body(f->dag, &f->body[b], &f->motion[b], free_base, acc, tau);
 }
 
-/* Nodes whose derivatives are known. */
-typedef struct Givens {
-    int count;
-    Ex *node, *slope;
-} Givens;
-
-static void give(Dag *dag, Givens *g, const Ex *node, const Ex *slope, int count)
+/* Along a coordinate bodies move by S. */
+static GivenSlopes moved_along(const Formula *f, int coordinate)
 {
-    int slopes = g->count;
-    for (int i = 0; i < count; ++i)
-        if (dag->node[node[i]].level == LEVEL_VARIABLE && dag->node[node[i]].op != OP_INPUT) {
-            *POOL_PUSH(dag->pool, g->node, g->count) = node[i];
-            *POOL_PUSH(dag->pool, g->slope, slopes) = slope[i];
-        }
-}
-
-/* w x J - J w x, the change of J in base axes as its body turns. */
-static void turn_inertia(Dag *dag, const Ex w[3], const Ex J[6], Ex out[6])
-{
-    static const int product[3][2] = {{0, 1}, {0, 2}, {1, 2}}; /* of J[3 + k] */
-    Ex across[3][3];                                           /* w x the columns of J */
-    const Ex column[3][3] = {{J[0], J[3], J[4]}, {J[3], J[1], J[5]}, {J[4], J[5], J[2]}};
-    for (int k = 0; k < 3; ++k)
-        ex_cross(dag, w, column[k], across[k]);
-    for (int k = 0; k < 3; ++k) {
-        out[k] = ex_add(dag, across[k][k], across[k][k]);
-        out[3 + k] = ex_add(dag, across[product[k][1]][product[k][0]], across[product[k][0]][product[k][1]]);
-    }
-}
-
-/* Along a coordinate bodies move by S: what follows their poses needs no derivative of the closed form. */
-static Givens moved_bodies(const Formula *f, int coordinate)
-{
-    Dag *dag = f->dag;
-    Givens g = {0};
-    for (int b = 0; b < f->layout.bodies; ++b) {
-        const Motion *m = &f->motion[b];
-        const BodyInertia *body = &f->body[b];
-        const Ex *S = m->S + 6 * coordinate;
-        Ex A[9], arm[3], at[3], J[6], column[3], t[3];
-        for (int k = 0; k < 3; ++k) {
-            for (int i = 0; i < 3; ++i)
-                column[i] = m->A[3 * i + k];
-            ex_cross(dag, S, column, t);
-            for (int i = 0; i < 3; ++i)
-                A[3 * i + k] = t[i];
-        }
-        ex_cross(dag, S, body->arm, arm);
-        ex_add3(dag, S + 3, arm, at);
-        turn_inertia(dag, S, body->J, J);
-        give(dag, &g, m->A, A, 9);
-        give(dag, &g, m->c, S + 3, 3);
-        give(dag, &g, body->arm, arm, 3);
-        give(dag, &g, body->at, at, 3);
-        give(dag, &g, body->J, J, 6);
-    }
+    GivenSlopes g = {0};
+    for (int b = 0; b < f->layout.bodies; ++b)
+        give_twist(f, b, f->motion[b].S + 6 * coordinate, &g);
     return g;
 }
 
@@ -219,7 +169,7 @@ static MotionColumns *columns_of(const Sequence *sequence, const Formula *formul
     for (int c = 0; c < columns; ++c) {
         column->array = kind[deps ? (c < 2 * deps ? c / deps : 2) : 2];
         column->index = column->array == ARRAY_turn ? c - 2 * deps : c % deps;
-        const Givens g = column->array == ARRAY_x ? moved_bodies(formula, column->index) : (Givens){0};
+        const GivenSlopes g = column->array == ARRAY_x ? moved_along(formula, column->index) : (GivenSlopes){0};
         const Seeds seeds = {.seed = seed, .context = column, .givens = g.count, .given = g.node, .slope = g.slope};
         const Ex *slope = subset_slopes(formula, &seeds, root, numbers + rows);
         for (int i = 0; i < numbers && c < 2 * deps; ++i)

@@ -630,6 +630,16 @@ static void replace_all(const Ex *image, Ex *e, int count)
         e[i] = image[e[i]];
 }
 
+static void replace_images(Pool *pool, const Ex *image, Motion *motion)
+{
+    Image *own = pool_alloc(pool, ((size_t)motion->images + 1) * sizeof *own);
+    for (int i = 0; i < motion->images; ++i) {
+        own[i] = motion->image[i];
+        replace_all(image, own[i].v, 3);
+    }
+    motion->image = own;
+}
+
 /* The results of `solve` with balanced sums. */
 static void balance(Work *w, Formula *formula)
 {
@@ -648,6 +658,8 @@ static void balance(Work *w, Formula *formula)
     for (int b = 0; b < layout->bodies; ++b)
         for (int i = 0; i < MOTION_S + 6 * layout->deps; ++i)
             replace_all(image, motion_number(&formula->motion[b], i), 1);
+    for (int b = 0; b < layout->bodies; ++b)
+        replace_images(w->pool, image, &formula->motion[b]);
     replace_all(image, formula->inertia, layout->inertia_size);
     replace_all(image, (Ex *)formula->body, layout->bodies * (int)(sizeof *formula->body / sizeof(Ex)));
 }

@@ -251,8 +251,17 @@ const bool *reactions_needed(Pool *pool, const Model *model, const Sequence *seq
 
 /* tangent.c: the block that stores the derivatives of motion and inertia that `solve` stores, at the poses q that it
  * found, and of the factors if reactions are asked for; it reads what `solve` stored. steady: the base does not turn;
- * tuned: derived numbers change; still: no coordinate does, nor these. */
-const Block *subset_tangent(const Formula *formula, bool steady, bool tuned, bool still);
+ * tuned: derived numbers change; still: no coordinate does, nor these; alone: its coordinates alone move the bodies. */
+const Block *subset_tangent(const Formula *formula, bool steady, bool tuned, bool still, bool alone);
+/* Nodes whose derivatives are known. */
+typedef struct GivenSlopes {
+    int count;
+    Ex *node, *slope;
+} GivenSlopes;
+
+/* Give those of a body that moves by a small twist, angular and linear of its reference point: pose, centre of mass,
+ * and inertia in base axes need no derivatives of what they are computed from. */
+void give_twist(const Formula *f, int body, const Ex twist[6], GivenSlopes *g);
 /* [nodes] images of roots in which numbers that `solve` of a closed form has stored are read. */
 const Ex *subset_read_stored(const Formula *formula, const Ex *root, int roots);
 /* The derivatives of nodes of `solve`, at the same poses. */

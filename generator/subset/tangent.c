@@ -78,6 +78,83 @@ static void give_poses(const Formula *formula, Seeds *seeds)
     seeds->slope = slope;
 }
 
+static void give(Dag *dag, GivenSlopes *g, const Ex *node, const Ex *slope, int count)
+{
+    int slopes = g->count;
+    for (int i = 0; i < count; ++i)
+        if (dag->node[node[i]].level == LEVEL_VARIABLE && dag->node[node[i]].op != OP_INPUT) {
+            *POOL_PUSH(dag->pool, g->node, g->count) = node[i];
+            *POOL_PUSH(dag->pool, g->slope, slopes) = slope[i];
+        }
+}
+
+/* w x J - J w x, the change of J in base axes as its body turns. */
+static void turn_inertia(Dag *dag, const Ex w[3], const Ex J[6], Ex out[6])
+{
+    static const int product[3][2] = {{0, 1}, {0, 2}, {1, 2}}; /* of J[3 + k] */
+    Ex across[3][3];                                           /* w x the columns of J */
+    const Ex column[3][3] = {{J[0], J[3], J[4]}, {J[3], J[1], J[5]}, {J[4], J[5], J[2]}};
+    for (int k = 0; k < 3; ++k)
+        ex_cross(dag, w, column[k], across[k]);
+    for (int k = 0; k < 3; ++k) {
+        out[k] = ex_add(dag, across[k][k], across[k][k]);
+        out[3 + k] = ex_add(dag, across[product[k][1]][product[k][0]], across[product[k][0]][product[k][1]]);
+    }
+}
+
+void give_twist(const Formula *f, int b, const Ex twist[6], GivenSlopes *g)
+{
+    Dag *dag = f->dag;
+    const Motion *m = &f->motion[b];
+    const BodyInertia *body = &f->body[b];
+    Ex A[9], arm[3], at[3], J[6], column[3], t[3];
+    for (int k = 0; k < 3; ++k) {
+        for (int i = 0; i < 3; ++i)
+            column[i] = m->A[3 * i + k];
+        ex_cross(dag, twist, column, t);
+        for (int i = 0; i < 3; ++i)
+            A[3 * i + k] = t[i];
+    }
+    ex_cross(dag, twist, body->arm, arm);
+    ex_add3(dag, twist + 3, arm, at);
+    turn_inertia(dag, twist, body->J, J);
+    give(dag, g, m->A, A, 9);
+    give(dag, g, m->c, twist + 3, 3);
+    give(dag, g, body->arm, arm, 3);
+    give(dag, g, body->at, at, 3);
+    give(dag, g, body->J, J, 6);
+}
+
+/* Bodies that the coordinates alone move, move by S dx. Directions that a closed form has of the same vectors turn with
+ * them. */
+static void give_moves(const Formula *formula, Seeds *seeds)
+{
+    Dag *dag = formula->dag;
+    GivenSlopes g = {0};
+    dag_section(dag, "derivatives of the poses: twists, of unit velocities");
+    for (int b = 0; b < formula->layout.bodies; ++b) {
+        const Motion *m = &formula->motion[b];
+        Ex twist[6] = {0}, t[6];
+        for (int j = 0; j < m->deps; ++j) {
+            const Element dx = {.array = ARRAY_x, .index = j, .slope = true};
+            for (int i = 0; i < 6; ++i)
+                t[i] = ex_mul(dag, ex_input(dag, dx, NULL), m->S[6 * j + i]);
+            ex_add3(dag, twist, t, twist);
+            ex_add3(dag, twist + 3, t + 3, twist + 3);
+        }
+        give_twist(formula, b, twist, &g);
+        for (int i = 0; i < m->images; ++i) {
+            if (m->image[i].side)
+                continue;
+            ex_cross(dag, twist, m->image[i].v, t);
+            give(dag, &g, m->image[i].v, t, 3);
+        }
+    }
+    seeds->givens = g.count;
+    seeds->given = g.node;
+    seeds->slope = g.slope;
+}
+
 const Ex *subset_slopes(const Formula *formula, const Seeds *seeds, const Ex *root, int roots)
 {
     Pool *pool = formula->dag->pool;
@@ -118,7 +195,7 @@ const Ex *subset_read_stored(const Formula *formula, const Ex *root, int roots)
     return dag_replace(dag, root, roots, from, to, stored);
 }
 
-const Block *subset_tangent(const Formula *formula, bool steady, bool tuned, bool still)
+const Block *subset_tangent(const Formula *formula, bool steady, bool tuned, bool still, bool alone)
 {
     Dag *dag = formula->dag;
     const int factors = formula->react.stores ? formula->layout.start_factors : -1;
@@ -126,6 +203,8 @@ const Block *subset_tangent(const Formula *formula, bool steady, bool tuned, boo
     Seeds seeds = {.moves = moves, .context = &moving};
     if (formula->implicit)
         give_poses(formula, &seeds);
+    else if (alone && !still)
+        give_moves(formula, &seeds);
     Block *block = block_tangent(&formula->solve, &seeds, false, is_wanted);
     Ex *root = pool_alloc(dag->pool, ((size_t)block->stores + 1) * sizeof *root);
     for (int i = 0; i < block->stores; ++i)
