@@ -156,6 +156,11 @@ extern const Insertions tangent_points, tangent_class_points, tangent_header_poi
 bool has_tangents(Generation *g);
 /* Functions for derivatives along directions and for implicit steps, and what both call. */
 void write_derivative_code(void *context, Text *out, int indent);
+/* Where derivatives are computed with the recovery: the prototype of a function for it, before the recovery; its call,
+ * in the place of the recovery's own ones; a member of the instance. */
+void write_recovery_along(void *context, Text *out, int indent);
+void write_recovery_call_along(Generation *g, Text *out, int indent);
+void write_along_member(void *context, Text *out, int indent);
 /* The blocks of tangents: of a class of subsets; of any other block. */
 const Block *class_tangent(const Generation *g, int class, bool still);
 const Block *whole_tangent(const Generation *g, const Block *block);

@@ -136,6 +136,7 @@ void write_recovery_calls(void *context, Text *out, int indent)
     Generation *g = context;
     const Sequence *sequence = g->sequence;
     write_rooms(g, out, indent);
+    write_recovery_call_along(g, out, indent);
     for (int s = 0; s < sequence->subsets; ++s) {
         const Subset *subset = &sequence->subset[s];
         if (subset->class < 0)

@@ -83,13 +83,27 @@ static bool moves_alone(const Generation *g, const Subset *subset)
     return alone;
 }
 
-const Block *class_tangent(const Generation *g, int class, bool still)
+/* The block of a class; both: with the recovery. */
+static const Block *tangent_of(const Generation *g, int class, bool still, bool both)
 {
     const Class *all = &g->sequence->class[class];
     bool alone = true;
     for (int i = 0; i < all->members; ++i)
         alone = alone && moves_alone(g, &g->sequence->subset[all->member[i]]);
-    return subset_tangent(g->plan->formula[class], !g->model->free_base, g->model->tuning, still, alone);
+    return subset_tangent(g->plan->formula[class], !g->model->free_base, g->model->tuning, still, alone, both);
+}
+
+const Block *class_tangent(const Generation *g, int class, bool still)
+{
+    return tangent_of(g, class, still, false);
+}
+
+/* Is the recovery computed together with its derivatives? Where all of it is closed forms, which read nothing of
+ * earlier recoveries; code in lanes recovers side by side. */
+static bool recovers_along(const Generation *g)
+{
+    return g->style->derivatives && !g->lanes && !g->formulation->single && g->sequence->classes > 0 &&
+           followed_bodies(g->plan) == 0;
 }
 
 const Block *whole_tangent(const Generation *g, const Block *block)
@@ -201,13 +215,13 @@ static void write_class_block(Expansion *x, const Block *block, Text *out, int i
 static void write_solve(void *context, Text *out, int indent)
 {
     Expansion *x = context;
-    write_class_block(x, class_tangent(x->g, x->g->class, false), out, indent);
+    write_class_block(x, tangent_of(x->g, x->g->class, false, recovers_along(x->g)), out, indent);
 }
 
 static void write_still(void *context, Text *out, int indent)
 {
     Expansion *x = context;
-    write_class_block(x, class_tangent(x->g, x->g->class, true), out, indent);
+    write_class_block(x, tangent_of(x->g, x->g->class, true, recovers_along(x->g)), out, indent);
 }
 
 static void write_react(void *context, Text *out, int indent)
@@ -228,8 +242,8 @@ static void write_class_tangents(void *context, Text *out, int indent)
         const char *member[class->members];
         for (int i = 0; i < class->members; ++i)
             member[i] = g->model->body[g->sequence->subset[class->member[i]].body[0]].name;
-        template_expand(g->pool, &body, g->templates, "tangent_class.c.in", g->model->name, class->name,
-                        &tangent_class_points, &x);
+        template_expand(g->pool, &body, g->templates, recovers_along(g) ? "tangent_found.c.in" : "tangent_class.c.in",
+                        g->model->name, class->name, &tangent_class_points, &x);
         if (g->plan->formula[g->class]->react.stores)
             template_expand(g->pool, &body, g->templates, "tangent_react.c.in", g->model->name, class->name,
                             &tangent_class_points, &x);
@@ -240,23 +254,24 @@ static void write_class_tangents(void *context, Text *out, int indent)
     g->class = 0;
 }
 
-/* What a subset's functions read: motions of the bodies solved before, coordinates, derived numbers. */
-static void write_links(Generation *g, Text *out, int indent, int s)
+/* What a subset's functions read: motions of the bodies solved before, coordinates, derived numbers. links: with . or
+ * ->; x: where the coordinates are. */
+static void write_links(Generation *g, Text *out, int indent, int s, const char *links, const char *x)
 {
     const Subset *subset = &g->sequence->subset[s];
     for (int i = 0; i < subset->knowns; ++i) {
         const char *place = body_motion_text(g, subset->known[i]);
-        line(out, indent, "links.known[%d] = %s + %s;", i, found_text(g, "motion"), place);
+        line(out, indent, "%sknown[%d] = %s + %s;", links, i, found_text(g, "motion"), place);
         line(out, indent, "dlinks.known[%d] = along->motion + %s;", i, place);
     }
     for (int j = 0; j < subset->deps; ++j) {
         const char *index = coordinate_text(g->pool, g->style->naming, subset->dep[j]);
-        line(out, indent, "links.x[%d] = self->x[%s], dlinks.x[%d] = along->x[%s];", j, index, j, index);
-        line(out, indent, "links.rate[%d] = self->xd[%s], dlinks.rate[%d] = along->xd[%s];", j, index, j, index);
+        line(out, indent, "%sx[%d] = %s[%s], dlinks.x[%d] = along->x[%s];", links, j, x, index, j, index);
+        line(out, indent, "%srate[%d] = self->xd[%s], dlinks.rate[%d] = along->xd[%s];", links, j, index, j, index);
     }
     if (!g->plan->formula[subset->class]->derived)
         return;
-    line(out, indent, "links.derived = self->derived + %d;", g->plan->derived_offset[s]);
+    line(out, indent, "%sderived = self->derived + %d;", links, g->plan->derived_offset[s]);
     line(out, indent, "dlinks.derived = along->derived + %d;", g->plan->derived_offset[s]);
 }
 
@@ -273,8 +288,9 @@ static bool follows_own(const Generation *g, const Subset *subset)
     return own;
 }
 
-/* still: none of its coordinates changes. Where nothing does that its motion follows, its derivatives are 0. */
-static void write_stillness(const Generation *g, Text *out, int indent, int s)
+/* still: none of its coordinates changes. Where nothing does that its motion follows, its derivatives are 0; otherwise:
+ * a line for that case. */
+static void write_stillness(const Generation *g, Text *out, int indent, int s, const char *otherwise)
 {
     const Subset *subset = &g->sequence->subset[s];
     const Layout *layout = &g->plan->formula[subset->class]->layout;
@@ -298,7 +314,33 @@ static void write_stillness(const Generation *g, Text *out, int indent, int s)
     if (layout->start_size)
         line(out, indent + 4, "memset(&along->start[%d], 0, %d * sizeof(gic_real));", g->plan->start_offset[s],
              layout->start_size);
+    if (otherwise)
+        line(out, indent + 4, "%s", otherwise);
     line(out, indent, "} else");
+}
+
+/* Of a subset's recovery with its derivatives; without them where they are 0. */
+static void write_found_call(Generation *g, Text *out, int indent, int s)
+{
+    const Subset *subset = &g->sequence->subset[s];
+    const char *name = g->model->name, *class = g->sequence->class[subset->class].name;
+    const char *motion = body_motion_text(g, subset->body[0]), *inertia = subset_inertia_text(g, s);
+    const int offset = g->plan->start_offset[s], place = class_place(&g->sequence->class[subset->class], s);
+    write_links(g, out, indent, s, "links->", "start");
+    write_stillness(g, out, indent, s,
+                    pool_print(g->pool,
+                               "status = %s_solve_%s(self, %s_k_%s[%d], links, start + %d, self->motion + %s, "
+                               "self->inertia + %s);",
+                               name, class, name, class, place, offset, motion, inertia));
+    line(
+        out, follows_own(g, subset) ? indent + 4 : indent,
+        "status = %s_tangent_solve_%s(self, still, %s_k_tangent_%s[%d], links, &dlinks, start + %d, along->start + %d, "
+        "self->motion + %s, self->inertia + %s, along->motion + %s, along->inertia + %s);",
+        name, class, name, class, place, offset, offset, motion, inertia, motion, inertia);
+    line(out, indent, "if (status != GIC_OK) {");
+    line(out, indent + 4, "self->head.subset = %s;", subset_text(g->pool, g->style->naming, s));
+    line(out, indent + 4, "return status;");
+    line(out, indent, "}");
 }
 
 static void write_calls(void *context, Text *out, int indent)
@@ -311,8 +353,12 @@ static void write_calls(void *context, Text *out, int indent)
         const Class *class = &g->sequence->class[subset->class];
         const int offset = g->plan->start_offset[s];
         line(out, indent, "/* stage %d: %s */", subset->stage, subset_title(g->pool, g->model, subset));
-        write_links(g, out, indent, s);
-        write_stillness(g, out, indent, s);
+        if (recovers_along(g)) {
+            write_found_call(g, out, indent, s);
+            continue;
+        }
+        write_links(g, out, indent, s, "links.", "self->x");
+        write_stillness(g, out, indent, s, NULL);
         line(out, follows_own(g, subset) ? indent + 4 : indent,
              "%s_tangent_solve_%s(still, %s_k_tangent_%s[%d], &links, &dlinks, start + %d, along->start + %d, "
              "%s + %s, %s + %s, along->motion + %s, along->inertia + %s);",
@@ -337,7 +383,7 @@ static void write_react_calls_along(void *context, Text *out, int indent)
         const char *motion = body_motion_text(g, subset->body[0]);
         const int own = plan->multiplier_offset[subset->body[0]];
         line(out, indent, "/* %s */", subset_title(g->pool, g->model, subset));
-        write_links(g, out, indent, s);
+        write_links(g, out, indent, s, "links.", "self->x");
         for (int i = 0; i < subset->knowns; ++i) {
             const int place = plan->multiplier_offset[subset->known[i]];
             if (needed[g->sequence->body_subset[subset->known[i]]])
@@ -485,6 +531,73 @@ static void write_orient_along(void *context, Text *out, int indent)
     expand(g, out, g->model->free_base ? "tangent_free.c.in" : "tangent_fixed.c.in");
 }
 
+/* ---- recovery ------------------------------------------------------------------------------------------------ */
+
+static void write_tangent_recovery(void *context, Text *out, int indent)
+{
+    Generation *g = context;
+    (void)indent;
+    expand(g, out, recovers_along(g) ? "tangent_recover_found.c.in" : "tangent_recover.c.in");
+}
+
+static void write_tangent_turn(void *context, Text *out, int indent)
+{
+    const Generation *g = context;
+    line(out, indent,
+         g->model->free_base ? "const gic_real *const dturn = along->state + %s_TWIST + 3;"
+                             : "const gic_real *const dturn = %s_still;",
+         g->model->free_base ? g->upper : g->model->name);
+}
+
+static void write_tangent_locate(void *context, Text *out, int indent)
+{
+    const Generation *g = context;
+    const char *name = g->model->name;
+    if (!recovers_along(g)) {
+        line(out, indent, "status = %s_locate(self, time, y, e);", name);
+        return;
+    }
+    line(out, indent, "status = finite && (!along->still || fast) ? %s_tangent_recovery(self, time, y, e, along)",
+         name);
+    line(out, indent + 4, ": %s_locate(self, time, y, e);", name);
+}
+
+static void write_tangent_recover(void *context, Text *out, int indent)
+{
+    Generation *g = context;
+    if (recovers_along(g))
+        return;
+    write_flat_call(g, out, indent);
+    line(out, indent, "if (!along->still || fast)");
+    line(out, indent + 4, "%s_tangent_recover(self, along, %s, dturn);", g->model->name,
+         g->model->free_base ? pool_print(g->pool, "y + %s_TWIST + 3", g->upper)
+                             : pool_print(g->pool, "%s_still", g->model->name));
+}
+
+void write_recovery_along(void *context, Text *out, int indent)
+{
+    const Generation *g = context;
+    if (recovers_along(g))
+        line(out, indent, "static int %s_tangent_piece(%s *self, %s_links *links, gic_real *start);", g->model->name,
+             g->model->name, g->model->name);
+}
+
+void write_recovery_call_along(Generation *g, Text *out, int indent)
+{
+    if (!recovers_along(g))
+        return;
+    line(out, indent, "if (self->along)");
+    line(out, indent + 4, "return %s_tangent_piece(self, links, start);", g->model->name);
+}
+
+void write_along_member(void *context, Text *out, int indent)
+{
+    const Generation *g = context;
+    if (recovers_along(g))
+        line(out, indent, "struct %s_direction *along; /* that a recovery is differentiated along; NULL: along none */",
+             g->model->name);
+}
+
 /* ---- calls where a model has these parts --------------------------------------------------------------------- */
 
 static void write_call_derive(void *context, Text *out, int indent)
@@ -522,18 +635,22 @@ static const Insertion class_point[] = {{"tangent knowns", write_solve_knowns}, 
                                         {"tangent balance", write_balance},     {NULL, NULL}};
 
 const Insertions tangent_class_points = {
-    (const char *const[]){"tangent_class.c.in", "tangent_react.c.in", "tangent_wheel.c.in", NULL}, class_point, NULL};
+    (const char *const[]){"tangent_class.c.in", "tangent_found.c.in", "tangent_react.c.in", "tangent_wheel.c.in", NULL},
+    class_point, NULL};
 
 static const Insertion tangent_point[] = {{"tangent motions", write_found_motions},
                                           {"tangent inertias", write_found_inertias},
                                           {"tangent start", write_found_start},
                                           {"flat", write_flat},
-                                          {"tangent flat", write_flat_call},
                                           {"class tangents", write_class_tangents},
                                           {"wheel tangents", write_wheel_tangents},
                                           {"derived tangent", write_derived_along},
                                           {"gather", write_gathered},
                                           {"tangent calls", write_calls},
+                                          {"tangent recovery", write_tangent_recovery},
+                                          {"tangent turn", write_tangent_turn},
+                                          {"tangent locate", write_tangent_locate},
+                                          {"tangent recover", write_tangent_recover},
                                           {"tangent dynamics", write_dynamics},
                                           {"tangent still dynamics", write_still_dynamics},
                                           {"tangent reactions", write_reactions_along},
@@ -558,9 +675,10 @@ static const Insertion tangent_point[] = {{"tangent motions", write_found_motion
                                           {NULL, NULL}};
 
 const Insertions tangent_points = {
-    (const char *const[]){"tangent.c.in", "tangent_table.c.in", "tangent_road.c.in", "tangent_friction.c.in",
-                          "tangent_derive.c.in", "tangent_reactions.c.in", "tangent_free.c.in", "tangent_fixed.c.in",
-                          "tangent_wheels.c.in", "tangent_states.c.in", "tangent_drive.c.in", NULL},
+    (const char *const[]){"tangent.c.in", "tangent_recover.c.in", "tangent_recover_found.c.in", "tangent_table.c.in",
+                          "tangent_road.c.in", "tangent_friction.c.in", "tangent_derive.c.in", "tangent_reactions.c.in",
+                          "tangent_free.c.in", "tangent_fixed.c.in", "tangent_wheels.c.in", "tangent_states.c.in",
+                          "tangent_drive.c.in", NULL},
     tangent_point, NULL};
 
 bool has_tangents(Generation *g)

@@ -251,8 +251,9 @@ const bool *reactions_needed(Pool *pool, const Model *model, const Sequence *seq
 
 /* tangent.c: the block that stores the derivatives of motion and inertia that `solve` stores, at the poses q that it
  * found, and of the factors if reactions are asked for; it reads what `solve` stored. steady: the base does not turn;
- * tuned: derived numbers change; still: no coordinate does, nor these; alone: its coordinates alone move the bodies. */
-const Block *subset_tangent(const Formula *formula, bool steady, bool tuned, bool still, bool alone);
+ * tuned: derived numbers change; still: no coordinate does, nor these; alone: its coordinates alone move the
+ * bodies; both: what `solve` of a closed form stores, too, with its checks, so that it reads nothing of it. */
+const Block *subset_tangent(const Formula *formula, bool steady, bool tuned, bool still, bool alone, bool both);
 /* Nodes whose derivatives are known. */
 typedef struct GivenSlopes {
     int count;

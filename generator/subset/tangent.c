@@ -195,7 +195,7 @@ const Ex *subset_read_stored(const Formula *formula, const Ex *root, int roots)
     return dag_replace(dag, root, roots, from, to, stored);
 }
 
-const Block *subset_tangent(const Formula *formula, bool steady, bool tuned, bool still, bool alone)
+const Block *subset_tangent(const Formula *formula, bool steady, bool tuned, bool still, bool alone, bool both)
 {
     Dag *dag = formula->dag;
     const int factors = formula->react.stores ? formula->layout.start_factors : -1;
@@ -205,7 +205,9 @@ const Block *subset_tangent(const Formula *formula, bool steady, bool tuned, boo
         give_poses(formula, &seeds);
     else if (alone && !still)
         give_moves(formula, &seeds);
-    Block *block = block_tangent(&formula->solve, &seeds, false, is_wanted);
+    Block *block = block_tangent(&formula->solve, &seeds, both, is_wanted);
+    if (both)
+        return block;
     Ex *root = pool_alloc(dag->pool, ((size_t)block->stores + 1) * sizeof *root);
     for (int i = 0; i < block->stores; ++i)
         root[i] = block->store[i].value;
