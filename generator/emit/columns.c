@@ -103,8 +103,7 @@ static void write_class_columns(void *context, Text *out, int indent)
     g->class = 0;
 }
 
-/* act[]: accelerations of the base, then of the coordinates that a subset depends on. */
-static void write_accelerations_of(const Generation *g, Text *out, int indent, const Subset *subset)
+void write_accelerations_of(const Generation *g, Text *out, int indent, const Subset *subset)
 {
     for (int j = 0; j < subset->deps; ++j) {
         const Coordinate *c = &g->model->coordinate[subset->dep[j]];

@@ -209,6 +209,8 @@ extern const Insertions columns_wheels_points, columns_wheel_points;
 void write_wheel_columns(Generation *g, Text *out);
 /* For spread.c: the call of the function of a subset; functions of the classes of wheels; the call for a member of one;
  * what moves wheels, with its derivatives; the powertrain. */
+/* act[] from 6 on: accelerations of the coordinates that a subset depends on, from acc[] and u[]. */
+void write_accelerations_of(const Generation *g, Text *out, int indent, const Subset *subset);
 void write_columns_turn(void *context, Text *out, int indent);
 void write_columns_call(Generation *g, Text *out, int indent, int subset);
 void write_wheel_column_classes(void *context, Text *out, int indent);

@@ -4,6 +4,7 @@
 #include "base/text.h"
 #include "emit/emit.h"
 #include "emit/emit_private.h"
+#include "emit/tangent.h"
 #include "expression/expression.h"
 #include "model/model.h"
 #include "model/powertrain_numbers.h"
@@ -12,13 +13,6 @@
 #include "vehicle/vehicle.h"
 #include "vehicle/wheel.h"
 #include <string.h>
-
-/* A template that is being expanded, with the constants that its blocks need. */
-typedef struct Expansion {
-    Generation *g;
-    const WheelClass *wheel; /* NULL: g->class is a class of subsets */
-    Constants constants;
-} Expansion;
 
 /* ---- blocks -------------------------------------------------------------------------------------------------- */
 
@@ -48,7 +42,7 @@ static bool is_motion_of_pose(const Generation *g, int index)
 }
 
 /* What moves along a direction in blocks about the whole vehicle and its wheels; context: the Generation. */
-static bool moves(const void *context, Element element)
+bool tangent_moves(const void *context, Element element)
 {
     const Generation *g = context;
     switch (element.array) {
@@ -62,7 +56,7 @@ static bool moves(const void *context, Element element)
 }
 
 /* The same where no coordinate changes, nor the geometry, so that no body changes its place relative to the base. */
-static bool moves_still(const void *context, Element element)
+bool tangent_moves_still(const void *context, Element element)
 {
     const Generation *g = context;
     switch (element.array) {
@@ -70,45 +64,13 @@ static bool moves_still(const void *context, Element element)
     case ARRAY_self_derived: return false;
     case ARRAY_m: return !is_motion_of_pose(g, element.index);
     case ARRAY_n: return !is_inertia_of_pose(g, element.index);
-    default: return moves(context, element);
+    default: return tangent_moves(context, element);
     }
-}
-
-/* Do coordinates alone move a subset's bodies, all of which its S has columns of? Not its carrier, nor the geometry. */
-static bool moves_alone(const Generation *g, const Subset *subset)
-{
-    bool alone = subset->carrier == BODY_BASE && !(subset->class >= 0 && g->plan->formula[subset->class]->derived);
-    for (int i = 0; i < subset->knowns && alone; ++i)
-        alone = moves_alone(g, &g->sequence->subset[g->sequence->body_subset[subset->known[i]]]);
-    return alone;
-}
-
-/* The block of a class; both: with the recovery. */
-static const Block *tangent_of(const Generation *g, int class, bool still, bool both)
-{
-    const Class *all = &g->sequence->class[class];
-    bool alone = true;
-    for (int i = 0; i < all->members; ++i)
-        alone = alone && moves_alone(g, &g->sequence->subset[all->member[i]]);
-    return subset_tangent(g->plan->formula[class], !g->model->free_base, g->model->tuning, still, alone, both);
-}
-
-const Block *class_tangent(const Generation *g, int class, bool still)
-{
-    return tangent_of(g, class, still, false);
-}
-
-/* Is the recovery computed together with its derivatives? Where all of it is closed forms, which read nothing of
- * earlier recoveries; code in lanes recovers side by side. */
-static bool recovers_along(const Generation *g)
-{
-    return g->style->derivatives && !g->lanes && !g->formulation->single && g->sequence->classes > 0 &&
-           followed_bodies(g->plan) == 0;
 }
 
 const Block *whole_tangent(const Generation *g, const Block *block)
 {
-    const Seeds seeds = {.moves = moves, .context = g};
+    const Seeds seeds = {.moves = tangent_moves, .context = g};
     return block_tangent(block, &seeds, true, NULL);
 }
 
@@ -116,7 +78,7 @@ const Block *whole_tangent(const Generation *g, const Block *block)
 static void write_tangent(Generation *g, Text *out, const Block *block, bool both, NamingScope scope,
                           Constants *constants, int indent)
 {
-    const Seeds seeds = {.moves = moves, .context = g};
+    const Seeds seeds = {.moves = tangent_moves, .context = g};
     write_fast_block(g, out, block_tangent(block, &seeds, both, NULL), scope, constants, indent);
 }
 
@@ -136,7 +98,7 @@ static void write_dynamics(void *context, Text *out, int indent)
 static void write_still_dynamics(void *context, Text *out, int indent)
 {
     Generation *g = context;
-    const Seeds seeds = {.moves = moves_still, .context = g};
+    const Seeds seeds = {.moves = tangent_moves_still, .context = g};
     Constants none = {0};
     write_fast_block(g, out, block_tangent(g->formulation->dynamics, &seeds, true, NULL), SCOPE_WHOLE, &none, indent);
 }
@@ -165,240 +127,6 @@ static void write_derived(void *context, Text *out, int indent)
     write_whole(g, out, derive_block(g->pool, g->plan), false, SCOPE_WHOLE, indent);
 }
 
-/* ---- classes of subsets -------------------------------------------------------------------------------------- */
-
-/* Pointers to the numbers of known bodies and to what follows geometric parameters, and to their derivatives. */
-static void write_knowns(const Generation *g, Text *out, int indent, bool wrenches)
-{
-    const Class *class = &g->sequence->class[g->class];
-    const Subset *first = &g->sequence->subset[class->member[0]];
-    for (int i = 0; i < first->knowns; ++i) {
-        line(out, indent, "const gic_real *const m%d = links->known[%d], *const dm%d = dlinks->known[%d]; /* %s */", i,
-             i, i, i, g->model->body[first->known[i]].name);
-        line(out, indent, "(void)m%d, (void)dm%d;", i, i);
-    }
-    for (int i = 0; wrenches && i < first->knowns; ++i) {
-        line(out, indent, "gic_real *const w%d = onto[%d], *const dw%d = donto[%d];", i, i, i, i);
-        line(out, indent, "(void)w%d, (void)dw%d;", i, i);
-    }
-    if (!g->plan->formula[g->class]->derived)
-        return;
-    line(out, indent, "const gic_real *const d = links->derived, *const dd = dlinks->derived;");
-    line(out, indent, "(void)d, (void)dd;");
-}
-
-static void write_solve_knowns(void *context, Text *out, int indent)
-{
-    const Expansion *x = context;
-    write_knowns(x->g, out, indent, false);
-}
-
-static void write_react_knowns(void *context, Text *out, int indent)
-{
-    const Expansion *x = context;
-    write_knowns(x->g, out, indent, true);
-}
-
-static void write_class_block(Expansion *x, const Block *block, Text *out, int indent)
-{
-    Style style = *x->g->style;
-    Naming naming;
-    if (style.naming) {
-        naming = *style.naming;
-        naming.class = x->g->plan->formula[x->g->class];
-        naming.scope = SCOPE_CLASS;
-        style.naming = &naming;
-    }
-    block_emit(out, block, &style, &x->constants, indent);
-}
-
-static void write_solve(void *context, Text *out, int indent)
-{
-    Expansion *x = context;
-    write_class_block(x, tangent_of(x->g, x->g->class, false, recovers_along(x->g)), out, indent);
-}
-
-static void write_still(void *context, Text *out, int indent)
-{
-    Expansion *x = context;
-    write_class_block(x, tangent_of(x->g, x->g->class, true, recovers_along(x->g)), out, indent);
-}
-
-static void write_react(void *context, Text *out, int indent)
-{
-    Expansion *x = context;
-    write_class_block(x, whole_tangent(x->g, &x->g->plan->formula[x->g->class]->react), out, indent);
-}
-
-/* The functions of all classes of subsets. */
-static void write_class_tangents(void *context, Text *out, int indent)
-{
-    Generation *g = context;
-    (void)indent;
-    for (g->class = 0; g->class < g->sequence->classes; ++g->class) {
-        const Class *class = &g->sequence->class[g->class];
-        Expansion x = {.g = g};
-        Text body = {.pool = g->pool};
-        const char *member[class->members];
-        for (int i = 0; i < class->members; ++i)
-            member[i] = g->model->body[g->sequence->subset[class->member[i]].body[0]].name;
-        template_expand(g->pool, &body, g->templates, recovers_along(g) ? "tangent_found.c.in" : "tangent_class.c.in",
-                        g->model->name, class->name, &tangent_class_points, &x);
-        if (g->plan->formula[g->class]->react.stores)
-            template_expand(g->pool, &body, g->templates, "tangent_react.c.in", g->model->name, class->name,
-                            &tangent_class_points, &x);
-        write_constants(g, out, pool_print(g->pool, "k_tangent_%s", class->name), g->plan->formula[g->class]->dag,
-                        &x.constants, member);
-        text_add(out, body.s, body.size);
-    }
-    g->class = 0;
-}
-
-/* What a subset's functions read: motions of the bodies solved before, coordinates, derived numbers. links: with . or
- * ->; x: where the coordinates are. */
-static void write_links(Generation *g, Text *out, int indent, int s, const char *links, const char *x)
-{
-    const Subset *subset = &g->sequence->subset[s];
-    for (int i = 0; i < subset->knowns; ++i) {
-        const char *place = body_motion_text(g, subset->known[i]);
-        line(out, indent, "%sknown[%d] = %s + %s;", links, i, found_text(g, "motion"), place);
-        line(out, indent, "dlinks.known[%d] = along->motion + %s;", i, place);
-    }
-    for (int j = 0; j < subset->deps; ++j) {
-        const char *index = coordinate_text(g->pool, g->style->naming, subset->dep[j]);
-        line(out, indent, "%sx[%d] = %s[%s], dlinks.x[%d] = along->x[%s];", links, j, x, index, j, index);
-        line(out, indent, "%srate[%d] = self->xd[%s], dlinks.rate[%d] = along->xd[%s];", links, j, index, j, index);
-    }
-    if (!g->plan->formula[subset->class]->derived)
-        return;
-    line(out, indent, "%sderived = self->derived + %d;", links, g->plan->derived_offset[s]);
-    line(out, indent, "dlinks.derived = along->derived + %d;", g->plan->derived_offset[s]);
-}
-
-/* Do a subset's bodies follow its own coordinates alone, relative to the base, as those do that it knows? */
-static bool follows_own(const Generation *g, const Subset *subset)
-{
-    bool own = !g->model->tuning;
-    for (int i = 0; i < subset->knowns; ++i) {
-        const Subset *known = &g->sequence->subset[g->sequence->body_subset[subset->known[i]]];
-        own = own && (known->class < 0 || follows_own(g, known));
-        for (int j = 0; j < known->deps; ++j)
-            own = own && subset_column(subset, known->dep[j], false) >= 0;
-    }
-    return own;
-}
-
-/* still: none of its coordinates changes. Where nothing does that its motion follows, its derivatives are 0; otherwise:
- * a line for that case. */
-static void write_stillness(const Generation *g, Text *out, int indent, int s, const char *otherwise)
-{
-    const Subset *subset = &g->sequence->subset[s];
-    const Layout *layout = &g->plan->formula[subset->class]->layout;
-    if (!follows_own(g, subset)) {
-        line(out, indent, "still = along->still;");
-        return;
-    }
-    for (int k = 0; k < 2; ++k) {
-        text_print(out, "%*s%s", indent, "", k ? "idle = still && !turns" : "still = 1");
-        for (int j = 0; j < subset->deps; ++j)
-            text_print(out, " && GIC_FABS(dlinks.%s[%d]) <= R(0.0)", k ? "rate" : "x", j); /* not so of a NaN */
-        text_print(out, ";\n");
-    }
-    /* &array[0], not the array: gcc warns (-Wmemset-elt-size) if the array has as many numbers as the subset has bytes,
-     * as it has of 8 alike subsets */
-    line(out, indent, "if (idle) {");
-    line(out, indent + 4, "memset(&along->motion[%s], 0, %d * sizeof(gic_real));", body_motion_text(g, subset->body[0]),
-         layout->bodies * layout->motion_size);
-    line(out, indent + 4, "memset(&along->inertia[%s], 0, %d * sizeof(gic_real));", subset_inertia_text(g, s),
-         layout->inertia_size);
-    if (layout->start_size)
-        line(out, indent + 4, "memset(&along->start[%d], 0, %d * sizeof(gic_real));", g->plan->start_offset[s],
-             layout->start_size);
-    if (otherwise)
-        line(out, indent + 4, "%s", otherwise);
-    line(out, indent, "} else");
-}
-
-/* Of a subset's recovery with its derivatives; without them where they are 0. */
-static void write_found_call(Generation *g, Text *out, int indent, int s)
-{
-    const Subset *subset = &g->sequence->subset[s];
-    const char *name = g->model->name, *class = g->sequence->class[subset->class].name;
-    const char *motion = body_motion_text(g, subset->body[0]), *inertia = subset_inertia_text(g, s);
-    const int offset = g->plan->start_offset[s], place = class_place(&g->sequence->class[subset->class], s);
-    write_links(g, out, indent, s, "links->", "start");
-    write_stillness(g, out, indent, s,
-                    pool_print(g->pool,
-                               "status = %s_solve_%s(self, %s_k_%s[%d], links, start + %d, self->motion + %s, "
-                               "self->inertia + %s);",
-                               name, class, name, class, place, offset, motion, inertia));
-    line(
-        out, follows_own(g, subset) ? indent + 4 : indent,
-        "status = %s_tangent_solve_%s(self, still, %s_k_tangent_%s[%d], links, &dlinks, start + %d, along->start + %d, "
-        "self->motion + %s, self->inertia + %s, along->motion + %s, along->inertia + %s);",
-        name, class, name, class, place, offset, offset, motion, inertia, motion, inertia);
-    line(out, indent, "if (status != GIC_OK) {");
-    line(out, indent + 4, "self->head.subset = %s;", subset_text(g->pool, g->style->naming, s));
-    line(out, indent + 4, "return status;");
-    line(out, indent, "}");
-}
-
-static void write_calls(void *context, Text *out, int indent)
-{
-    Generation *g = context;
-    for (int s = 0; s < g->sequence->subsets; ++s) {
-        const Subset *subset = &g->sequence->subset[s];
-        if (subset->class < 0)
-            continue;
-        const Class *class = &g->sequence->class[subset->class];
-        const int offset = g->plan->start_offset[s];
-        line(out, indent, "/* stage %d: %s */", subset->stage, subset_title(g->pool, g->model, subset));
-        if (recovers_along(g)) {
-            write_found_call(g, out, indent, s);
-            continue;
-        }
-        write_links(g, out, indent, s, "links.", "self->x");
-        write_stillness(g, out, indent, s, NULL);
-        line(out, follows_own(g, subset) ? indent + 4 : indent,
-             "%s_tangent_solve_%s(still, %s_k_tangent_%s[%d], &links, &dlinks, start + %d, along->start + %d, "
-             "%s + %s, %s + %s, along->motion + %s, along->inertia + %s);",
-             g->model->name, class->name, g->model->name, class->name, class_place(class, s), offset, offset,
-             found_text(g, "motion"), body_motion_text(g, subset->body[0]), found_text(g, "inertia"),
-             subset_inertia_text(g, s), body_motion_text(g, subset->body[0]), subset_inertia_text(g, s));
-    }
-}
-
-/* In reverse computational sequence, as the multipliers themselves. */
-static void write_react_calls_along(void *context, Text *out, int indent)
-{
-    Generation *g = context;
-    const Plan *plan = g->plan;
-    const bool *needed = reactions_needed(g->pool, g->model, g->sequence);
-    for (int s = g->sequence->subsets - 1; s >= 0; --s) {
-        const Subset *subset = &g->sequence->subset[s];
-        if (subset->class < 0 || !needed[s])
-            continue;
-        const Class *class = &g->sequence->class[subset->class];
-        const int factors = plan->start_offset[s] + plan->formula[subset->class]->layout.start_factors;
-        const char *motion = body_motion_text(g, subset->body[0]);
-        const int own = plan->multiplier_offset[subset->body[0]];
-        line(out, indent, "/* %s */", subset_title(g->pool, g->model, subset));
-        write_links(g, out, indent, s, "links.", "self->x");
-        for (int i = 0; i < subset->knowns; ++i) {
-            const int place = plan->multiplier_offset[subset->known[i]];
-            if (needed[g->sequence->body_subset[subset->known[i]]])
-                line(out, indent, "onto[%d] = lambda + %d, donto[%d] = dlambda + %d;", i, place, i, place);
-            else
-                line(out, indent, "onto[%d] = spare, donto[%d] = dspare;", i, i);
-        }
-        line(out, indent,
-             "%s_tangent_react_%s(%s_k_tangent_%s[%d], &links, &dlinks, start + %d, along->start + %d, %s + %s, "
-             "along->motion + %s, lambda + %d, dlambda + %d, onto, donto);",
-             g->model->name, class->name, g->model->name, class->name, class_place(class, s), factors, factors,
-             found_text(g, "motion"), motion, motion, own, own);
-    }
-}
-
 /* ---- wheels with tires --------------------------------------------------------------------------------------- */
 
 static void write_arrays(void *context, Text *out, int indent)
@@ -410,19 +138,19 @@ static void write_arrays(void *context, Text *out, int indent)
 
 static void write_contact(void *context, Text *out, int indent)
 {
-    Expansion *x = context;
+    TangentExpansion *x = context;
     write_tangent(x->g, out, &x->wheel->contact, true, SCOPE_WHEEL, &x->constants, indent);
 }
 
 static void write_tire(void *context, Text *out, int indent)
 {
-    Expansion *x = context;
+    TangentExpansion *x = context;
     write_tangent(x->g, out, &x->wheel->tire, true, SCOPE_WHEEL, &x->constants, indent);
 }
 
 static void write_balance(void *context, Text *out, int indent)
 {
-    Expansion *x = context;
+    TangentExpansion *x = context;
     write_tangent(x->g, out, &x->wheel->balance, true, SCOPE_WHEEL, &x->constants, indent);
 }
 
@@ -433,7 +161,7 @@ static void write_wheel_classes(void *context, Text *out, int indent)
     (void)indent;
     for (int c = 0; c < wheels->classes; ++c) {
         const WheelClass *class = &wheels->class[c];
-        Expansion x = {.g = g, .wheel = class};
+        TangentExpansion x = {.g = g, .wheel = class};
         Text body = {.pool = g->pool};
         const char *member[class->members];
         for (int i = 0; i < class->members; ++i)
@@ -529,6 +257,13 @@ static void write_orient_along(void *context, Text *out, int indent)
     Generation *g = context;
     (void)indent;
     expand(g, out, g->model->free_base ? "tangent_free.c.in" : "tangent_fixed.c.in");
+}
+
+static void write_tangent_rates(void *context, Text *out, int indent)
+{
+    Generation *g = context;
+    (void)indent;
+    expand(g, out, balances_bodies(g) ? "tangent_bodies.c.in" : "tangent_dynamics.c.in");
 }
 
 /* ---- recovery ------------------------------------------------------------------------------------------------ */
@@ -628,26 +363,45 @@ static void write_call_react(void *context, Text *out, int indent)
          g->model->name);
 }
 
-static const Insertion class_point[] = {{"tangent knowns", write_solve_knowns}, {"tangent solve", write_solve},
-                                        {"tangent still", write_still},         {"react knowns", write_react_knowns},
-                                        {"tangent react block", write_react},   {"tangent arrays", write_arrays},
-                                        {"tangent contact", write_contact},     {"tangent tire", write_tire},
-                                        {"tangent balance", write_balance},     {NULL, NULL}};
+static const Insertion class_point[] = {{"tangent knowns", tangent_knowns},
+                                        {"tangent solve", tangent_solve},
+                                        {"tangent lack", tangent_lack},
+                                        {"tangent kept argument", tangent_kept_argument},
+                                        {"tangent kept unused", tangent_kept_unused},
+                                        {"tangent still lack", tangent_still_lack},
 
-const Insertions tangent_class_points = {
-    (const char *const[]){"tangent_class.c.in", "tangent_found.c.in", "tangent_react.c.in", "tangent_wheel.c.in", NULL},
-    class_point, NULL};
+                                        {"tangent still", tangent_still},
+                                        {"react knowns", tangent_react_knowns},
+                                        {"tangent react block", tangent_react_block},
+                                        {"tangent arrays", write_arrays},
+                                        {"tangent contact", write_contact},
+                                        {"tangent tire", write_tire},
+                                        {"tangent balance", write_balance},
+                                        {NULL, NULL}};
+
+const Insertions tangent_class_points = {(const char *const[]){"tangent_class.c.in", "tangent_found.c.in",
+                                                               "tangent_lack.c.in", "tangent_react.c.in",
+                                                               "tangent_wheel.c.in", NULL},
+                                         class_point, NULL};
 
 static const Insertion tangent_point[] = {{"tangent motions", write_found_motions},
                                           {"tangent inertias", write_found_inertias},
                                           {"tangent start", write_found_start},
                                           {"flat", write_flat},
-                                          {"class tangents", write_class_tangents},
+                                          {"class tangents", tangent_classes},
                                           {"wheel tangents", write_wheel_tangents},
                                           {"derived tangent", write_derived_along},
                                           {"gather", write_gathered},
-                                          {"tangent calls", write_calls},
+                                          {"tangent calls", tangent_calls},
                                           {"tangent recovery", write_tangent_recovery},
+                                          {"tangent rates", write_tangent_rates},
+                                          {"tangent base", tangent_base},
+                                          {"tangent lacks", tangent_lacks},
+                                          {"tangent factors", tangent_factors},
+                                          {"tangent forces", tangent_forces},
+                                          {"tangent still forces", tangent_still_forces},
+                                          {"tangent solution", tangent_solution},
+                                          {"tangent still solution", tangent_still_solution},
                                           {"tangent turn", write_tangent_turn},
                                           {"tangent locate", write_tangent_locate},
                                           {"tangent recover", write_tangent_recover},
@@ -662,7 +416,7 @@ static const Insertion tangent_point[] = {{"tangent motions", write_found_motion
                                           {"tangent react", write_call_react},
                                           {"tangent derived", write_derived},
                                           {"tangent wrenches", write_wrenches},
-                                          {"tangent react calls", write_react_calls_along},
+                                          {"tangent react calls", tangent_react_calls},
                                           {"wheel class tangents", write_wheel_classes},
                                           {"tangent link", write_link},
                                           {"tangent torque", write_torque},
@@ -675,10 +429,11 @@ static const Insertion tangent_point[] = {{"tangent motions", write_found_motion
                                           {NULL, NULL}};
 
 const Insertions tangent_points = {
-    (const char *const[]){"tangent.c.in", "tangent_recover.c.in", "tangent_recover_found.c.in", "tangent_table.c.in",
-                          "tangent_road.c.in", "tangent_friction.c.in", "tangent_derive.c.in", "tangent_reactions.c.in",
-                          "tangent_free.c.in", "tangent_fixed.c.in", "tangent_wheels.c.in", "tangent_states.c.in",
-                          "tangent_drive.c.in", NULL},
+    (const char *const[]){"tangent.c.in", "tangent_dynamics.c.in", "tangent_bodies.c.in", "tangent_recover.c.in",
+                          "tangent_recover_found.c.in", "tangent_table.c.in", "tangent_road.c.in",
+                          "tangent_friction.c.in", "tangent_derive.c.in", "tangent_reactions.c.in", "tangent_free.c.in",
+                          "tangent_fixed.c.in", "tangent_wheels.c.in", "tangent_states.c.in", "tangent_drive.c.in",
+                          NULL},
     tangent_point, NULL};
 
 bool has_tangents(Generation *g)
@@ -719,6 +474,8 @@ static void write_direction_members(void *context, Text *out, int indent)
     const Generation *g = context;
     if (g->model->tuning)
         line(out, indent, "gic_real derived[%s_DERIVED];", g->upper);
+    if (has_tangents(one_by_one(context)) && balances_bodies(g))
+        line(out, indent, "gic_real kept[%d];", room(tangent_kept_offset(g, g->sequence->subsets)));
     if (wheels_roll(g))
         line(out, indent, "gic_real grip[%s_GRIP * %s_ROLLING];", g->upper, g->upper);
     if (g->model->powertrain)

@@ -82,6 +82,8 @@ typedef struct Table Table; /* base/table.h */
     X(local, "local", "derivatives of what wheels, own states and the powertrain do by what moves each of them") \
     X(half, "half", "derivatives of a wheel's contact and tire by what moves the wheel") \
     X(factor, "factor", "factors of the mass matrix") \
+    X(lack, "lack", "what bodies lack in the equations of motion along a direction") \
+    X(kept, "kept", "numbers of a subset's recovery that its derivatives read later") \
     X(cut, "cut", "what an element exerts, as its derivatives are asked for; in no code") \
     X(inside, "inside", "how far a coordinate is within the range of polynomials")
 

@@ -5,6 +5,7 @@
 #include "expression/expression.h"
 #include "sequence/sequence.h"
 #include "subset/subset.h"
+#include "subset/tangent.h"
 
 int subset_column(const Subset *subset, int coordinate, bool rate)
 {
@@ -70,65 +71,6 @@ static bool is_own(const Dag *dag, Ex e, int number, int size)
     return node->op == OP_INPUT && node->element->array == ARRAY_motion && node->element->index / size == number / size;
 }
 
-static void apply(Dag *dag, const Ex J[6], const Ex x[3], Ex out[3])
-{
-    ex_apply(dag, (Ex[]){J[0], J[3], J[4], J[3], J[1], J[5], J[4], J[5], J[2]}, x, out);
-}
-
-/* Velocity of a body's centre of mass at unit rate of a coordinate. */
-static void unit_velocity(Dag *dag, const Ex *S, const Ex arm[3], Ex out[3])
-{
-    Ex t[3];
-    ex_cross(dag, S, arm, t);
-    ex_add3(dag, S + 3, t, out);
-}
-
-/* What one body lacks: Newton's and Euler's equations at accelerations acc, projected on the coordinates. */
-static void add_body(Dag *dag, const BodyInertia *body, const Motion *m, bool free_base, const Ex *acc, Ex *tau)
-{
-    Ex a[3], alpha[3], t[3], force[3], moment[3], v[3];
-    ex_cross(dag, acc, body->at, a);
-    ex_add3(dag, a, acc + 3, a);
-    ex_add3(dag, acc, (Ex[3]){0}, alpha);
-    for (int j = 0; j < m->deps; ++j) {
-        unit_velocity(dag, m->S + 6 * j, body->arm, v);
-        ex_scale3(dag, acc[6 + j], v, t);
-        ex_add3(dag, a, t, a);
-        ex_scale3(dag, acc[6 + j], m->S + 6 * j, t);
-        ex_add3(dag, alpha, t, alpha);
-    }
-    ex_scale3(dag, body->mass, a, force);
-    ex_add3(dag, body->force, force, force);
-    apply(dag, body->J, alpha, moment);
-    ex_add3(dag, body->moment, moment, moment);
-    ex_cross(dag, body->at, force, t);
-    ex_add3(dag, t, moment, t);
-    if (free_base) {
-        ex_add3(dag, tau, t, tau);
-        ex_add3(dag, tau + 3, force, tau + 3);
-    }
-    for (int j = 0; j < m->deps; ++j) {
-        unit_velocity(dag, m->S + 6 * j, body->arm, v);
-        const Ex own = ex_add(dag, ex_dot(dag, v, force), ex_dot(dag, m->S + 6 * j, moment));
-        tau[6 + j] = ex_add(dag, tau[6 + j], own);
-    }
-}
-
-/* What a subset's bodies lack in the equations of motion at accelerations acc[]: moment and force on the whole vehicle,
- * forces along the coordinates. acc: of the base, alpha and a, then of the deps. */
-static void residuals(const Formula *f, bool free_base, int deps, Ex *tau)
-{
-    Ex acc[6 + deps];
-    for (int i = 0; i < 6 + deps; ++i) {
-        acc[i] = ex_input(f->dag, element_at(ARRAY_acc, i), NULL);
-        tau[i] = 0;
-    }
-    for (int i = 0; i < 3 && !free_base; ++i)
-        acc[i] = 0;
-    for (int b = 0; b < f->layout.bodies; ++b)
-        add_body(f->dag, &f->body[b], &f->motion[b], free_base, acc, tau);
-}
-
 /* Along a coordinate bodies move by S. */
 static GivenSlopes moved_along(const Formula *f, int coordinate)
 {
@@ -165,7 +107,7 @@ static MotionColumns *columns_of(const Sequence *sequence, const Formula *formul
     for (int i = 0; i < numbers; ++i)
         root[i] = *motion_number(&formula->motion[i / size], i % size);
     dag_section(dag, "derivatives by coordinates and their rates");
-    residuals(formula, free_base, deps, root + numbers);
+    subset_residuals(formula, free_base, deps, root + numbers);
     for (int c = 0; c < columns; ++c) {
         column->array = kind[deps ? (c < 2 * deps ? c / deps : 2) : 2];
         column->index = column->array == ARRAY_turn ? c - 2 * deps : c % deps;
@@ -227,7 +169,8 @@ MotionColumns **subsets_columns(Pool *pool, const Sequence *sequence, Formula *c
         if (!is_uniform(sequence, &sequence->class[c]))
             return NULL;
         Column column = {.sequence = sequence, .formula = formula, .made = made, .class = &sequence->class[c]};
-        made[c] = columns_of(sequence, formula[c], free_base, straight, &column);
+        made[c] =
+            columns_of(sequence, straight ? formula[c] : formula_from_parts(formula[c]), free_base, straight, &column);
     }
     return made;
 }

@@ -650,18 +650,21 @@ static void balance(Work *w, Formula *formula)
         root[i] = solve->store[i].value;
     for (int i = 0; i < solve->checks; ++i)
         root[solve->stores + i] = solve->check[i].value;
+    const int nodes = w->dag->nodes;
     const Ex *image = balance_sums(w->pool, w->dag, root, solve->stores + solve->checks);
     for (int i = 0; i < solve->stores; ++i)
         solve->store[i].value = image[solve->store[i].value];
     for (int i = 0; i < solve->checks; ++i)
         solve->check[i].value = image[solve->check[i].value];
-    for (int b = 0; b < layout->bodies; ++b)
+    for (int b = 0; b < layout->bodies; ++b) {
         for (int i = 0; i < MOTION_S + 6 * layout->deps; ++i)
             replace_all(image, motion_number(&formula->motion[b], i), 1);
-    for (int b = 0; b < layout->bodies; ++b)
         replace_images(w->pool, image, &formula->motion[b]);
+    }
     replace_all(image, formula->inertia, layout->inertia_size);
     replace_all(image, (Ex *)formula->body, layout->bodies * (int)(sizeof *formula->body / sizeof(Ex)));
+    formula->balanced = image;
+    formula->unbalanced = nodes;
 }
 
 /* NULL if the geometry has no closed form. */

@@ -217,6 +217,9 @@ typedef struct Formula {
     Motion *motion;     /* [bodies] motions after `solve` */
     Ex *inertia;        /* [inertia_size] numbers of inertia after `solve` */
     BodyInertia *body;  /* [bodies] what these are sums of */
+    const Ex *balanced; /* [unbalanced] what stands for a node of `solve` as it was before its sums were balanced; parts
+                         * of sums have no images of their own; NULL: no node has */
+    int unbalanced;
     Ex (*across)[2][3]; /* [joints] directions in the base frame that multipliers refer to instead of those fixed in the
                          * first body at the design; 0: the latter */
     Block predict;      /* q from the start and `change`; reach: squared relative size of that move */
@@ -248,25 +251,6 @@ double (*reference_points(Pool *pool, const Model *model, const Sequence *sequen
 /* [subsets] true if some `reaction` output needs the multipliers: of its joint's subset and of later subsets that load
  * it. */
 const bool *reactions_needed(Pool *pool, const Model *model, const Sequence *sequence);
-
-/* tangent.c: the block that stores the derivatives of motion and inertia that `solve` stores, at the poses q that it
- * found, and of the factors if reactions are asked for; it reads what `solve` stored. steady: the base does not turn;
- * tuned: derived numbers change; still: no coordinate does, nor these; alone: its coordinates alone move the
- * bodies; both: what `solve` of a closed form stores, too, with its checks, so that it reads nothing of it. */
-const Block *subset_tangent(const Formula *formula, bool steady, bool tuned, bool still, bool alone, bool both);
-/* Nodes whose derivatives are known. */
-typedef struct GivenSlopes {
-    int count;
-    Ex *node, *slope;
-} GivenSlopes;
-
-/* Give those of a body that moves by a small twist, angular and linear of its reference point: pose, centre of mass,
- * and inertia in base axes need no derivatives of what they are computed from. */
-void give_twist(const Formula *f, int body, const Ex twist[6], GivenSlopes *g);
-/* [nodes] images of roots in which numbers that `solve` of a closed form has stored are read. */
-const Ex *subset_read_stored(const Formula *formula, const Ex *root, int roots);
-/* The derivatives of nodes of `solve`, at the same poses. */
-const Ex *subset_slopes(const Formula *formula, const Seeds *seeds, const Ex *root, int roots);
 
 /* columns.c: derivatives of a class's motions by each coordinate that they depend on, then by each rate of these, then
  * of residuals by these and by the base's angular velocity. Of each number `slope` has what it is: a literal, a

@@ -4,13 +4,7 @@
  * linear solve with the factors that `solve` has anyway; Newton's iterations are not looked at. */
 #include "expression/expression.h"
 #include "subset/subset.h"
-
-/* What moves along a direction. */
-typedef struct Moving {
-    bool steady, tuned, still;
-    bool poses;  /* q too */
-    int factors; /* from this place on stored numbers of the start are wanted; -1: none */
-} Moving;
+#include "subset/tangent.h"
 
 bool motion_is_pose(int place)
 {
@@ -19,23 +13,16 @@ bool motion_is_pose(int place)
 
 static bool moves(const void *context, Element element)
 {
-    const Moving *moving = context;
+    const Along *along = context;
     switch (element.array) {
-    case ARRAY_x: return !moving->still;
+    case ARRAY_x: return !along->still;
     case ARRAY_rate: return true;
-    case ARRAY_known: return !moving->still || !motion_is_pose(element.index);
-    case ARRAY_turn: return !moving->steady;
-    case ARRAY_d: return moving->tuned && !moving->still;
-    case ARRAY_q: return moving->poses;
+    case ARRAY_known: return !along->still || !motion_is_pose(element.index);
+    case ARRAY_turn: return !along->steady;
+    case ARRAY_d: return along->tuned && !along->still;
+    case ARRAY_q: return false;
     default: return false; /* times and starts */
     }
-}
-
-static bool is_wanted(const void *context, Element target)
-{
-    const Moving *moving = context;
-    const bool factor = target.array == ARRAY_start && moving->factors >= 0 && target.index >= moving->factors;
-    return target.array == ARRAY_motion || target.array == ARRAY_inertia || factor;
 }
 
 /* dq [7] of a body that moves by a small twist: of its place, and E^T omega / 2. */
@@ -76,6 +63,30 @@ static void give_poses(const Formula *formula, Seeds *seeds)
     seeds->givens = 2 * places;
     seeds->given = node;
     seeds->slope = slope;
+}
+
+const Formula *formula_from_parts(const Formula *formula)
+{
+    enum { numbers = sizeof(BodyInertia) / sizeof(Ex) };
+    Pool *pool = formula->dag->pool;
+    const int roots = formula->layout.bodies * numbers;
+    Ex *from = NULL, *to = NULL;
+    int count = 0, counted = 0;
+    Formula *own = pool_alloc(pool, sizeof *own);
+    if (!formula->balanced || !formula->body)
+        return formula;
+    for (Ex e = 0; e < (Ex)formula->unbalanced; ++e)
+        if (formula->balanced[e] != e) {
+            *POOL_PUSH(pool, from, count) = e;
+            *POOL_PUSH(pool, to, counted) = formula->balanced[e];
+        }
+    const Ex *body = (const Ex *)formula->body;
+    const Ex *image = dag_replace(formula->dag, body, roots, from, to, count);
+    *own = *formula;
+    own->body = pool_alloc(pool, ((size_t)formula->layout.bodies + 1) * sizeof *own->body);
+    for (int i = 0; i < roots; ++i)
+        ((Ex *)own->body)[i] = image[body[i]];
+    return own;
 }
 
 static void give(Dag *dag, GivenSlopes *g, const Ex *node, const Ex *slope, int count)
@@ -195,18 +206,39 @@ const Ex *subset_read_stored(const Formula *formula, const Ex *root, int roots)
     return dag_replace(dag, root, roots, from, to, stored);
 }
 
-const Block *subset_tangent(const Formula *formula, bool steady, bool tuned, bool still, bool alone, bool both)
+Seeds subset_seeds(const Formula *formula, const Along *along)
 {
-    Dag *dag = formula->dag;
-    const int factors = formula->react.stores ? formula->layout.start_factors : -1;
-    Moving moving = {.steady = steady, .tuned = tuned, .still = still, .factors = factors};
-    Seeds seeds = {.moves = moves, .context = &moving};
+    Seeds seeds = {.moves = moves, .context = along};
     if (formula->implicit)
         give_poses(formula, &seeds);
-    else if (alone && !still)
+    else if (along->alone && !along->still)
         give_moves(formula, &seeds);
-    Block *block = block_tangent(&formula->solve, &seeds, both, is_wanted);
-    if (both)
+    return seeds;
+}
+
+/* Without the stores of a block that are not wanted. */
+static void drop_stores(const Formula *formula, TangentStores stores, Block *block)
+{
+    const int factors = formula->react.stores ? formula->layout.start_factors : -1;
+    int left = 0;
+    for (int i = 0; i < block->stores; ++i) {
+        const Element target = block->store[i].target;
+        const bool factor = target.array == ARRAY_start && factors >= 0 && target.index >= factors;
+        const bool inertia = target.array == ARRAY_inertia && !(stores == TANGENT_MOTIONS && target.slope);
+        if (target.array == ARRAY_motion || factor || inertia)
+            block->store[left++] = block->store[i];
+    }
+    block->stores = left;
+}
+
+const Block *subset_tangent(const Formula *balanced, const Along *along, TangentStores stores)
+{
+    const Formula *formula = formula_from_parts(balanced);
+    Dag *dag = formula->dag;
+    const Seeds seeds = subset_seeds(formula, along);
+    Block *block = block_tangent(&formula->solve, &seeds, stores != TANGENT_AFTER, NULL);
+    drop_stores(formula, stores, block);
+    if (stores != TANGENT_AFTER)
         return block;
     Ex *root = pool_alloc(dag->pool, ((size_t)block->stores + 1) * sizeof *root);
     for (int i = 0; i < block->stores; ++i)
