@@ -235,6 +235,33 @@ static Ex solution_slope(Dag *dag, const DagSystem *system, Ex e, const Ex *slop
     return (*dx)[i];
 }
 
+/* The slope of a node that is given, and of what it is the negative or a constant multiple of: where the node is a
+ * factor or a summand, the graph has these in its place. */
+static void give(Dag *dag, int nodes, Ex e, Ex slope_of_e, Ex *slope, bool *given)
+{
+    for (;;) {
+        const Ex opposite = dag->node[e].op == OP_SUB ? ex_neg(dag, e) : e; /* of a difference: the other way round */
+        if (opposite != e && (int)opposite < nodes) {
+            slope[opposite] = ex_neg(dag, slope_of_e);
+            given[opposite] = true;
+        }
+        const Node *node = &dag->node[e];
+        slope[e] = slope_of_e;
+        given[e] = true;
+        const int constant = node->op != OP_MUL                               ? -1
+                             : dag->node[node->arg[0]].level < LEVEL_VARIABLE ? 0
+                             : dag->node[node->arg[1]].level < LEVEL_VARIABLE ? 1
+                                                                              : -1;
+        if (node->op != OP_NEG && constant < 0)
+            return;
+        const Ex inner = node->op == OP_NEG ? node->arg[0] : node->arg[1 - constant];
+        if (given[inner])
+            return;
+        slope_of_e = node->op == OP_NEG ? ex_neg(dag, slope_of_e) : ex_div(dag, slope_of_e, node->arg[constant]);
+        e = inner;
+    }
+}
+
 const Ex *dag_slopes(Dag *dag, const Block *block, const Ex *root, int roots, const Seeds *seeds)
 {
     const int nodes = dag->nodes;
@@ -244,10 +271,8 @@ const Ex *dag_slopes(Dag *dag, const Block *block, const Ex *root, int roots, co
     const Order order = order_of(dag, root, roots, true);
     const bool *positive = checked(dag, block);
     const Ex **dx = pool_alloc(dag->pool, ((size_t)dag->systems + 1) * sizeof *dx);
-    for (int i = 0; i < seeds->givens; ++i) {
-        slope[seeds->given[i]] = seeds->slope[i];
-        given[seeds->given[i]] = true;
-    }
+    for (int i = 0; i < seeds->givens; ++i)
+        give(dag, nodes, seeds->given[i], seeds->slope[i], slope, given);
     for (int k = 0; k < order.count; ++k) {
         const Ex e = order.node[k];
         if (given[e] || dag->node[e].level < LEVEL_VARIABLE)

@@ -100,8 +100,8 @@ static int is_near(double a, double b, double most)
     return fabs(a - b) <= 1e-9 * (1 + most);
 }
 
-/* All columns at once must be the tangents, which must be 0 where they are not listed. 0: they are; else 1 + a row, or
- * a status. */
+/* All columns at once must be the tangents, which must be 0 but for roundings where they are not listed. 0: they are;
+ * else 1 + a row, or a status. */
 static int check_jacobian(const Vehicle *at)
 {
     const gic_model *code = &OF(_model);
@@ -127,7 +127,9 @@ static int check_jacobian(const Vehicle *at)
         for (r = 0; r < results && status == GIC_OK; ++r) {
             const double one = r < states ? along.rate[r] : along.output[r - states];
             const double most = largest(all + r * columns, columns);
-            if (is_listed(r, c) ? !is_near(all[r * columns + c], one, most) : one != 0 || all[r * columns + c] != 0)
+            /* of what cancels body by body a tangent may leave roundings */
+            if (is_listed(r, c) ? !is_near(all[r * columns + c], one, most)
+                                : fabs(one) > 1e-14 * (1 + most) || all[r * columns + c] != 0)
                 status = 1 + r;
         }
     }

@@ -31,6 +31,9 @@ check 'bushings' compare "$root/tests/data/laws/bushing.veh"
 check 'air' compare "$root/tests/data/laws/aero.veh"
 check 'bodies on bushings alone' compare "$root/tests/data/laws/free.veh" -n 2
 check 'gears and couplers' compare "$root/tests/data/laws/coupled.veh" -n 2
+check 'bodies that slide and turn on axes' compare "$root/tests/data/laws/sliders.veh"
+sed 's/^base: box/base: ground/; s/^joints:/joints:\n  stand: {type: prismatic, bodies: [ground, box], axis: [1, 0, 0]}/; s/^coordinates:/coordinates:\n  along: {type: translation, bodies: [ground, box], axis: [1, 0, 0], range: [-1, 1]}/; s/^model: .*/model: stood/' \
+    "$root/tests/data/laws/sliders.veh" >"$work/stood.veh" && check 'on a rail of the ground' compare "$work/stood.veh"
 {
     cat "$models/hmmwv_tires.veh"
     printf 'states:\n  soft: {rate: "(rate(spring_f_l) - soft) / 0.05"}\n'
