@@ -8,7 +8,9 @@
  *
  * The second is theory, after the run, when nothing can be lost any more: of the equations linearized about that state,
  * is there a motion that dies out by itself, and grows with this method and step? One window may be a moment in a stop;
- * two in a row are a finding. */
+ * two in a row are a finding. Implicit and exponential steps that have an older Jacobian, or fast states in steps of
+ * their own, may keep a state moving about which theory finds nothing: for them a stretch is made again in small steps
+ * instead. */
 #include "engine/engine.h"
 #include "gic_runtime.h"
 #include "model/model.h"
@@ -17,6 +19,7 @@
 #include "run/run.h"
 #include "run/stability_watch.h"
 #include "run/step_growth.h"
+#include "run/step_replay.h"
 #include "scene/scene.h"
 #include "scene/sleep.h"
 
@@ -41,6 +44,8 @@ static const double growth_least = 1.01; /* per step; eigenvalues about a moving
 /* A state to be judged after the run. */
 typedef struct Moment {
     int window;
+    gic_head *self;                    /* of implicit steps: the instance */
+    bool still;                        /* of those: steps keep still what should move */
     double time, *last, *mean, *input; /* state at the window's end, and the mean of its samples (NULL: not known) */
     int32_t *discrete;
     bool judged, near; /* near: it would grow with slightly longer steps */
@@ -90,9 +95,11 @@ StepTheory *step_theory_new(Pool *pool, const Model *model)
 StepWatch *step_watch_new(Pool *pool, StepTheory *theory, const Scene *scene, const Engine *engine, bool seldom)
 {
     const int64_t steps = scene->outputs * scene->per_output;
-    if (scene->method > GIC_RK4 || steps < 2 * SHORTEST)
-        return NULL;
     const gic_model *code = engine->code;
+    const bool dual = scene->ratio > 1 && code->fast_count > 0;
+    const bool damped = scene_implicit(scene) && !dual && scene->keep < 2 && scene->method != GIC_EXP3;
+    if (scene->method >= METHOD_ADAMS || damped || steps < 2 * SHORTEST)
+        return NULL;
     const int states = code->slow_count + code->fast_count;
     StepWatch *watch = pool_alloc(pool, sizeof *watch);
     *watch = (StepWatch){.pool = pool, .theory = theory, .scene = scene, .engine = engine};
@@ -159,6 +166,10 @@ static void keep(StepWatch *watch, const gic_model *code, gic_head *self, gic_he
     Moment *moment = &watch->moment[watch->moments];
     *moment = (Moment){.window = (int)(watch->steps / watch->window), .time = gic_time(self)};
     memcpy(copy, self, code->size);
+    if (scene_implicit(watch->scene)) {
+        moment->self = instance_new(pool, watch->engine);
+        memcpy(moment->self, self, code->size);
+    }
     moment->last = standard_state(watch, copy);
     double *state = instance_array(copy, code->state_offset);
     for (int i = 0; i < code->slow_count + code->fast_count; ++i)
@@ -305,6 +316,27 @@ static void judge_mode(const StepWatch *watch, const Mode *mode, Moment *moment)
     moment->imaginary = mode->imaginary;
 }
 
+/* Implicit steps: does the run keep something moving that small steps don't? */
+static void judge_implicit(StepWatch *watch, Moment *moment)
+{
+    enum { MOST = 64 };
+    const Modes *modes = linearize_moment(watch->theory, watch->scene, watch->engine, moment, moment->last)
+                             ? modes_try(watch->pool, watch->theory->linear, watch->theory->A)
+                             : NULL;
+    double fastest = 0;
+    for (int k = 0; modes && k < modes->count; ++k)
+        fastest = fmax(fastest, hypot(modes->mode[k].real, modes->mode[k].imaginary));
+    const double parts = ceil(fastest * watch->scene->step);
+    if (!modes || !(parts <= MOST))
+        return;
+    const Replay found =
+        step_replay(watch->pool, watch->engine, watch->scene, moment->self, (int)fmax(parts, 4), watch->longest);
+    const int number = found.moves >= 0 ? found.moves : found.stays;
+    moment->growth = number >= 0;
+    moment->still = found.moves < 0;
+    moment->moves = number >= 0 ? watch->engine->code->state[number].name : NULL;
+}
+
 static void judge_state(StepWatch *watch, Moment *moment, const double *state)
 {
     const Modes *modes = linearize_moment(watch->theory, watch->scene, watch->engine, moment, state)
@@ -321,6 +353,11 @@ static bool grows(StepWatch *watch, Moment *moment)
     if (!moment->judged) {
         moment->judged = true;
         moment->shorten = 1;
+        if (scene_implicit(watch->scene)) {
+            if (moment->last)
+                judge_implicit(watch, moment);
+            return moment->growth > 0;
+        }
         if (moment->mean)
             judge_state(watch, moment, moment->mean);
         if (moment->last && (moment->near || !moment->mean || watch->moments <= FEW) && moment->growth == 0)
@@ -366,6 +403,24 @@ static int find_pair(StepWatch *watch)
     return -1;
 }
 
+/* What is wrong with implicit steps, from a time on. */
+static const char *tell_implicit(const StepWatch *watch, double from, const Moment *worst, const char **remedy)
+{
+    const Scene *scene = watch->scene;
+    const char *dual = scene->ratio > 1 ? pool_print(watch->pool, ", %d fast steps in each", scene->ratio) : "";
+    const char *instead = scene->ratio > 1            ? "more fast steps in each, one rate (`ratio: 1`)"
+                          : scene->method == GIC_EXP3 ? "new exponentials more often (`keep_jacobian: 10`)"
+                                                      : "new Jacobians more often (`keep_jacobian`)";
+    *remedy = pool_print(
+        watch->pool, "take %s, or shorter steps; what is wrong shows where results with half the step are different",
+        instead);
+    return pool_print(watch->pool,
+                      "from t = %.4g s on the run is unstable, though tires or stops keep it within bounds: steps of "
+                      "%.6g s (%s%s) keep '%s' %s, which small ones of rk4 %s",
+                      from, scene->step, integrator_name(scene->method), dual, worst->moves,
+                      worst->still ? "still" : "moving", worst->still ? "move" : "do not");
+}
+
 const char *step_watch_judge(StepWatch *watch, const char **remedy)
 {
     int first = find_pair(watch);
@@ -385,6 +440,8 @@ const char *step_watch_judge(StepWatch *watch, const char **remedy)
         worst = moment->judged && moment->growth > worst->growth ? moment : worst;
     }
     const double from = (double)((watch->moment[first].window - 1) * watch->window) * scene->step;
+    if (scene_implicit(scene))
+        return tell_implicit(watch, from, worst, remedy);
     const char *ratio = scene->ratio > 1 ? pool_print(pool, ", %d fast steps in each", scene->ratio) : "";
     const char *imaginary =
         worst->imaginary > 1e-6 * fabs(worst->real) ? pool_print(pool, " +- %.3gi", worst->imaginary) : "";

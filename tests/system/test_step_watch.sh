@@ -96,6 +96,47 @@ scene tires_brake adams 1 0.01 2.4 0.24
 run -q --engine tcc "$models/hmmwv_tires.veh" "$work/tires_brake.scene" -o "$work/run.csv"
 check 'variable steps: quiet' exits 0
 
+# Implicit and exponential steps with an older Jacobian, or with fast states in steps of their own: what they keep moving,
+# or keep still, as short steps don't. model, scene, integrator, ratio, duration; step, line of the scene; step
+while read -r model scene integrator ratio duration long short line; do
+    what="$model, $scene, $integrator, ratio $ratio, $line"
+    for step in $long $short; do
+        scene "$scene" "$integrator" "$ratio" "$step" "$duration" "$(awk "BEGIN { print 20 * $step }")"
+        [ "$line" = - ] || echo "$line" >>"$work/$scene.scene"
+        run -q --engine tcc "$models/$model.veh" "$work/$scene.scene" -o "$work/run.csv"
+        if [ "$step" = "$long" ]; then
+            check "$what, $step s: fails" exits 1
+            check "$what, $step s: time, quantity" says "error: from t = [0-9.]* s on the run is unstable.* steps of ${step}[0-9]* s .* keep '[a-z_.]*' \\(moving\\|still\\), which small ones"
+            check "$what, $step s: a remedy" says 'remedy: take .*, or shorter steps'
+        else
+            check "$what, $step s: good" exits 0
+            check "$what, $step s: quiet" quiet
+        fi
+    done
+done <<'END'
+hmmwv_tires tires_park ros2 4 22.4 0.014 0.007 -
+hmmwv_tires tires_park ros3 4 22.4 0.014 0.007 -
+hmmwv_tires tires_park imex 4 22.4 0.014 0.007 -
+hmmwv_tires tires_park exp3 4 22.4 0.014 0.007 -
+hmmwv_tires tires_brake exp3 1 19.2 0.006 0.004 -
+hmmwv_tires tires_brake exp3 1 19.2 0.008 0.004 -
+END
+# what they damp, or follow roughly, is none of that
+for way in 'ros2 6 -' 'ros3 6 -' 'imex 6 keep_jacobian:_16' 'exp3 6 -'; do
+    # shellcheck disable=SC2086  # words
+    set -- $way
+    scene full_run "$1" "$2" 0.006 30 0.12
+    [ "$3" = - ] || echo "$3" | tr _ ' ' | sed 's/keep /keep_/' >>"$work/full_run.scene"
+    run -q --engine tcc "$models/hmmwv_vehicle.veh" "$work/full_run.scene" -o "$work/run.csv"
+    check "full_run, $way: good" exits 0
+    check "full_run, $way: quiet" quiet
+    scene tires_rough "$1" 4 0.004 4.8 0.12
+    [ "$1" = exp3 ] || echo 'keep_jacobian: 8' >>"$work/tires_rough.scene"
+    run -q --engine tcc "$models/hmmwv_tires.veh" "$work/tires_rough.scene" -o "$work/run.csv"
+    check "a rough road, $1, a Jacobian for 8 steps: good" exits 0
+    check "a rough road, $1: quiet" quiet
+done
+
 # Nothing changes by being watched: runs of fewer than 50 steps are not, and are the beginning of longer ones, in which
 # both windows of 25 steps have something to keep.
 for how in 'ab3 6 0.01 tcc' 'ab3 1 0.004 tape' 'rk4 1 0.017 tcc' 'ab3 6 0.01 gic' 'ab3 6 0.01 gcp1'; do
