@@ -217,8 +217,8 @@ static void read_ratio(Reader *reader, const Item *item, bool replaced)
                   "ratio must be a whole number from 1 to %g", most);
     const int32_t method = reader->scene->method;
     if (method != GIC_AB3 && !method_implicit(method) && !replaced)
-        diag_fail(item->at, "remove it, or write `integrator: ab3`", "%s has one rate for everything",
-                  integrator_name(method));
+        diag_fail(item->at, "remove it, or write `integrator: ab3` or an implicit one",
+                  "%s has one rate for everything", integrator_name(method));
     /* what is meant for explicit steps is not for implicit ones in their place */
     const Item *own = doc_find(reader->scene->root, "integrator");
     if (method == GIC_AB3 || (method_implicit(method) && own && method_implicit(integrator_method(own->text))))

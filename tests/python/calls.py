@@ -375,6 +375,23 @@ outputs: {turn: {type: coordinate, coordinate: turn}}
         with self.assertRaisesRegex(gicgen.WrongCall, "fast steps with ab3 alone"):
             lanes.step(0.004, 1, "ros2", ratio=4)
 
+    def test_stiff_states_alone(self):
+        """`implicit: stiff` of a scene: an instance that is made for it has run()'s digits, which are others without."""
+        model = gicgen.Model(TIRES, integrator="imex")
+        ends = {}
+        with tempfile.TemporaryDirectory() as folder:
+            for which in ("stiff", "all"):
+                path = os.path.join(folder, which + ".scene")
+                with open(path, "w", encoding="utf-8") as file:
+                    file.write("gicscene: 1\nduration: 0.4\nstep: 0.004\noutput_step: 0.4\nintegrator: imex\n"
+                               f"implicit: {which}\ninitial: {{velocity: [10, 0, 0]}}\n")
+                rows, car = model.run(path), model.instance(path)
+                car.step(0.004, 100, "imex")
+                ends[which] = [car.outputs[name] for name in ("chassis.x", "chassis.z")]
+                self.assertEqual(ends[which], [rows[name][-1] for name in ("chassis.x", "chassis.z")])
+        self.assertNotEqual(ends["stiff"], ends["all"])
+        self.assertLess(abs(ends["stiff"][1] - ends["all"][1]), 1e-4)  # both are of order 2 at 4 ms
+
     def test_linear(self):
         linear, modes = self.model.linearize(), self.model.modes()
         self.assertEqual(linear.A.shape, (4, 4))
@@ -483,6 +500,7 @@ outputs: {turn: {type: coordinate, coordinate: turn}}
                 (lambda: env(horizon=1.5), TypeError, "horizon: a whole number is wanted, not 1.5"),
                 (lambda: env(method="euler"), ValueError, "'ab3' or 'rk4'"),
                 (lambda: env(ratio=0), ValueError, "ratio: a whole number from 1"),
+                (lambda: env(method="ros3"), gicgen.WrongCall, "its code has no implicit steps"),
                 (lambda: env(scatter={"r.y": -1}), ValueError, "scatter of 'r.y': half a width"),
                 (lambda: env(scatter={"r.yy": 1}), KeyError, "no state 'r.yy'"),
                 (lambda: env(scatter=[1]), TypeError, "scatter: a dictionary"),

@@ -97,6 +97,7 @@ class VectorEnv:
             raise TypeError(f"observations: a list of names is wanted, not {observations!r}")
         self.batch = model.batch(num_envs, scene)
         self.num_envs = n = self.batch.vehicles
+        self.batch.step(self._step, 0, method, ratio)  # no step: can the model's code take this method?
         each = {self._place("inputs", name): _pair(pair, f"action {name!r}")
                 for name, pair in _by_name(actions, "actions")}
         self._inputs = list(each)
