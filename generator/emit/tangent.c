@@ -328,9 +328,11 @@ void write_recovery_call_along(Generation *g, Text *out, int indent)
 void write_along_member(void *context, Text *out, int indent)
 {
     const Generation *g = context;
-    if (recovers_along(g))
-        line(out, indent, "struct %s_direction *along; /* that a recovery is differentiated along; NULL: along none */",
-             g->model->name);
+    if (!recovers_along(g))
+        return;
+    line(out, 0, "#define %s_ALONG 1 /* for code of many vehicles */", g->upper);
+    line(out, indent, "struct %s_direction *along; /* that a recovery is differentiated along; NULL: along none */",
+         g->model->name);
 }
 
 /* ---- calls where a model has these parts --------------------------------------------------------------------- */

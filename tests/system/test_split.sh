@@ -246,7 +246,7 @@ refused() { # STATUS TEXT COMMAND...
     [ $? -eq "$wanted" ] && grep -qF -- "$text" err && [ ! -e none.c ] && [ ! -e none.csv ]
     verdict $? "refused: $text"
 }
-refused 2 'it goes with --implicit: --stiff' "$gicgen" --stiff 0.001 light.veh -o none.c
+refused 2 'implicit is missing, which it goes with: --stiff' "$gicgen" --stiff 0.001 light.veh -o none.c
 for step in 0 -1 nan inf 0.001s ''; do
     refused 2 "--stiff takes the length of a step in seconds, above 0, not: $step" "$gicgen" --implicit --stiff "$step" light.veh -o none.c
 done
