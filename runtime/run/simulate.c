@@ -522,7 +522,8 @@ static int constant_step(const Step *step, gic_head *self)
     const Scene *scene = step->scene;
     const double start = gic_time(self);
     const int history = self->history;
-    const int status = gic_step_dual_by(model, self, scene->step, scene->method, scene->ratio, scene->steady);
+    const int32_t ratio = scene->method == GIC_RK4 ? 1 : scene->ratio; /* it has one rate */
+    const int status = gic_step_dual_by(model, self, scene->step, scene->method, ratio, scene->steady);
     return status == GIC_OK ? knots_cross(model, scene, self, start, history) : status;
 }
 
