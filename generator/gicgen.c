@@ -230,12 +230,14 @@ static Options read_options(int count, char **word)
         usage_error("--derivatives is for the code of one vehicle in any scene, without --batch and --scene; "
                     "vehicles of a batch have derivatives beside it (models/DERIVATIVES.md, Many vehicles)",
                     NULL);
-    if ((options.spread || options.exponential || options.stiff > 0) && !options.implicit)
-        usage_error("--implicit is missing, which it goes with", options.spread        ? "--spread-jacobian"
-                                                                 : options.exponential ? "--exponential"
-                                                                                       : "--stiff");
+    if (options.spread && !options.implicit)
+        usage_error("--spread-jacobian goes with --implicit", NULL);
+    if (options.exponential && !options.implicit)
+        usage_error("--exponential goes with --implicit", NULL);
+    if (options.stiff > 0 && !options.implicit)
+        usage_error("--stiff goes with --implicit", NULL);
     if (options.stiff > 0 && options.exponential)
-        usage_error("exponential steps treat all states alike: leave out --exponential or", "--stiff");
+        usage_error("--stiff does not go with --exponential, whose steps treat all states alike", NULL);
     if (options.implicit && !fmu && (options.task != TASK_GENERATE || options.scene))
         usage_error("--implicit is for an FMU and the code of one vehicle in any scene, without --batch and --scene",
                     NULL);

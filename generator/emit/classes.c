@@ -140,7 +140,7 @@ static void write_keep(void *context, Text *out, int indent)
     line(out, indent + 4, "start[i] = q[i];");
 }
 
-static void write_block(Generation *g, const Block *block, Text *out, int indent)
+void write_class_block(const Generation *g, const Block *block, Constants *constants, Text *out, int indent)
 {
     Style style = *g->style;
     Naming naming;
@@ -150,7 +150,12 @@ static void write_block(Generation *g, const Block *block, Text *out, int indent
         naming.scope = SCOPE_CLASS;
         style.naming = &naming;
     }
-    block_emit(out, block, &style, &g->constants[g->class], indent);
+    block_emit(out, block, &style, constants, indent);
+}
+
+static void write_block(const Generation *g, const Block *block, Text *out, int indent)
+{
+    write_class_block(g, block, &g->constants[g->class], out, indent);
 }
 
 static void write_predict(void *context, Text *out, int indent)

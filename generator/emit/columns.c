@@ -69,15 +69,7 @@ static void write_knowns(void *context, Text *out, int indent)
 static void write_motions(void *context, Text *out, int indent)
 {
     Expansion *x = context;
-    Style style = *x->g->style;
-    Naming naming;
-    if (style.naming) {
-        naming = *style.naming;
-        naming.class = x->g->plan->formula[x->g->class];
-        naming.scope = SCOPE_CLASS;
-        style.naming = &naming;
-    }
-    block_emit(out, &x->g->columns[x->g->weighing]->motion[x->g->class]->block, &style, &x->constants, indent);
+    write_class_block(x->g, &x->g->columns[x->g->weighing]->motion[x->g->class]->block, &x->constants, out, indent);
 }
 
 static void write_class_columns(void *context, Text *out, int indent)

@@ -99,6 +99,8 @@ extern const Insertions code_points;
 /* classes.c: the insertion points of subset.c.in for the class g->class, context: the Generation; all classes. */
 extern const Insertions subset_points;
 void write_classes(void *context, Text *out, int indent);
+/* A block of g->class, in the names of its members. */
+void write_class_block(const Generation *g, const Block *block, Constants *constants, Text *out, int indent);
 /* The constants of g->class that the text refers to so far. */
 void write_class_constants(Generation *g, Text *out);
 /* True if the class has a member that is not the image of another one. */

@@ -102,15 +102,7 @@ void tangent_react_knowns(void *context, Text *out, int indent)
 
 void tangent_class_block(TangentExpansion *x, const Block *block, Text *out, int indent)
 {
-    Style style = *x->g->style;
-    Naming naming;
-    if (style.naming) {
-        naming = *style.naming;
-        naming.class = x->g->plan->formula[x->g->class];
-        naming.scope = SCOPE_CLASS;
-        style.naming = &naming;
-    }
-    block_emit(out, block, &style, &x->constants, indent);
+    write_class_block(x->g, block, &x->constants, out, indent);
 }
 
 void tangent_kept_argument(void *context, Text *out, int indent)

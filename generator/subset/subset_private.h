@@ -58,6 +58,9 @@ typedef struct Work {
     bool *alive; /* [samples] the sample reached the end of its path */
 } Work;
 
+/* Balance the sums of a formula's `solve`: balance.c. */
+void formula_balance(Work *w, Formula *formula);
+
 /* The subset of the i-th member. */
 const Subset *subset_member(const Work *w, int i);
 /* A constant of the class from each member's number; *formula: its formula if it follows parameters. */

@@ -8,9 +8,9 @@
  *
  * The second is theory, after the run, when nothing can be lost any more: of the equations linearized about that state,
  * is there a motion that dies out by itself, and grows with this method and step? One window may be a moment in a stop;
- * two in a row are a finding. Implicit and exponential steps that have an older Jacobian, or fast states in steps of
- * their own, may keep a state moving about which theory finds nothing: for them a stretch is made again in small steps
- * instead. */
+ * two in a row are a finding. Implicit and exponential steps that have an older Jacobian or explicit states, or fast
+ * states in steps of their own, may keep a state moving about which theory finds nothing: for them a stretch is made
+ * again in small steps instead. */
 #include "engine/engine.h"
 #include "gic_runtime.h"
 #include "model/model.h"
@@ -97,7 +97,7 @@ StepWatch *step_watch_new(Pool *pool, StepTheory *theory, const Scene *scene, co
     const int64_t steps = scene->outputs * scene->per_output;
     const gic_model *code = engine->code;
     const bool dual = scene->ratio > 1 && code->fast_count > 0;
-    const bool damped = scene_implicit(scene) && !dual && scene->keep < 2 && scene->method != GIC_EXP3;
+    const bool damped = scene_implicit(scene) && !dual && scene->keep < 2 && !scene->stiff && scene->method != GIC_EXP3;
     if (scene->method >= METHOD_ADAMS || damped || steps < 2 * SHORTEST)
         return NULL;
     const int states = code->slow_count + code->fast_count;

@@ -24,7 +24,8 @@ StepTheory *step_theory_new(Pool *pool, const Model *model);
 double step_theory_stiffness(StepTheory *theory, const Scene *scene, const Engine *engine, double time,
                              const double *state, const double *input, const int32_t *discrete);
 /* For a run of a scene, also before scene_narrow(), by an engine. NULL: the run is not watched, because its steps
- * vary or are too few. seldom: look at few steps, for runs whose instances are not at hand. */
+ * vary, are too few, or implicit with all states and a Jacobian of its own in each. seldom: look at few steps, for runs
+ * whose instances are not at hand. */
 StepWatch *step_watch_new(Pool *pool, StepTheory *theory, const Scene *scene, const Engine *engine, bool seldom);
 /* Call after each step of an instance, which is only read. code: the engine's, or faster one; copy: the instance on
  * which outputs are computed (engines may keep factors for these two only); it is overwritten unless the vehicle

@@ -385,7 +385,7 @@ for way in '--batch 4' "--scene $models/scenes/paper_run.scene" --sequence; do
 done
 
 "$gicgen" --exponential "$models/hmmwv.veh" -o none.c >out 2>err
-{ [ $? -eq 2 ] && grep -q 'implicit is missing, which it goes with: --' err && [ ! -e none.c ]; }
+{ [ $? -eq 2 ] && grep -q 'exponential goes with --implicit' err && [ ! -e none.c ]; }
 verdict $? '--exponential without --implicit is refused'
 
 # ---- embedded: both number types, other compilers, no heap

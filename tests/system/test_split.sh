@@ -246,11 +246,11 @@ refused() { # STATUS TEXT COMMAND...
     [ $? -eq "$wanted" ] && grep -qF -- "$text" err && [ ! -e none.c ] && [ ! -e none.csv ]
     verdict $? "refused: $text"
 }
-refused 2 'implicit is missing, which it goes with: --stiff' "$gicgen" --stiff 0.001 light.veh -o none.c
+refused 2 'stiff goes with --implicit' "$gicgen" --stiff 0.001 light.veh -o none.c
 for step in 0 -1 nan inf 0.001s ''; do
     refused 2 "--stiff takes the length of a step in seconds, above 0, not: $step" "$gicgen" --implicit --stiff "$step" light.veh -o none.c
 done
-refused 2 'exponential steps treat all states alike' "$gicgen" --implicit --exponential --stiff 0.001 light.veh -o none.c
+refused 2 'whose steps treat all states alike' "$gicgen" --implicit --exponential --stiff 0.001 light.veh -o none.c
 scene 1 0.001 'integrator: imex' 'implicit: some' >bad.scene
 refused 1 "bad.scene:6:11: error: implicit is" "$gicrun" light.veh bad.scene -o none.csv
 scene 1 0.001 'integrator: ab3' 'implicit: stiff' >bad.scene
