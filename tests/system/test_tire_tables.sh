@@ -121,7 +121,7 @@ refused() {
     got=$?
     check "refused: $text" [ $got -eq "$status" ]
     check "with the message: $text" grep -q -e "$text" err
-    check "with the remedy: $text" grep -q -e "$([ "$status" -eq 2 ] && echo usage || echo "leave --tire-tables out")" err
+    check "with the remedy: $text" grep -q -e "$([ "$status" -eq 2 ] && echo "gicgen -h" || echo "leave --tire-tables out")" err
     check "nothing is written: $text" [ ! -e none.c ]
 }
 refused 1 "no tire of 'hmmwv_tmeasy' has a Magic Formula" --tire-tables "$models/hmmwv_tmeasy.veh"
