@@ -362,6 +362,16 @@ static void write_load(void *context, Text *out, int indent)
     write_batch_exchange(context, out, indent, true);
 }
 
+/* Newton's iteration might end elsewhere if it began again; closed forms give the same bits again. */
+static void write_kept_work(void *context, Text *out, int indent)
+{
+    const Generation *g = context;
+    bool closed = true;
+    for (int c = 0; c < g->sequence->classes; ++c)
+        closed = closed && g->plan->formula[c]->closed;
+    line(out, indent, closed ? "before->recovered = lane_whole(0);" : "before->work = self->work;");
+}
+
 static void write_store(void *context, Text *out, int indent)
 {
     write_batch_exchange(context, out, indent, false);
@@ -399,6 +409,7 @@ static const Insertion batch_point[] = {{"banner", write_batch_banner},
                                         {"abouts", write_abouts},
                                         {"blame", write_blame},
                                         {"tuned", write_batch_tuned},
+                                        {"kept work", write_kept_work},
                                         {"load", write_load},
                                         {"store", write_store},
                                         {"hash", write_hash},

@@ -28,8 +28,6 @@ void write_batch_members(const Generation *g, Text *out, int indent)
     line(out, indent, "%s_lane recovered_at[2 * %s_COORDINATE_ROOM + 4]; /* where the recovery in `work` was */", name,
          upper);
     line(out, indent, "%s_mask recovered; /* lanes in which there is one */", name);
-    line(out, indent, "%s_work work;%s", name,
-         g->formulation->wheels ? "" : " /* of vehicles that are left to the code for one vehicle */");
 }
 
 /* An array of a block and of one vehicle, and how many numbers it has. */
