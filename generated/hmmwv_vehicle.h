@@ -84,13 +84,13 @@
  *
  * Evaluations (right-hand sides and looks) of a step, with `ratio` fast steps, of RK4 with ratio 1:
  *   AB3                                                1 + 1
- *   RK4, one of the first two of AB3                   4 ratio + 1, + 3
+ *   RK4, and at most one of the first two of AB3       4 ratio + 1, + 3
  *   with head.locate, a contact made or lost           4 ratio + 16 more at least, 8 more for another contact then
  *   a change of gear                                   4 ratio + 9 more at least
  * With head.most = N, 4 ratio + 4 or more, no step takes more than N, whatever happens in it (EVENTS.md section 10).
  */
 #ifndef HMMWV_VEHICLE_H
-#define HMMWV_VEHICLE_H 0x60d699c5
+#define HMMWV_VEHICLE_H 0x9658ad1f
 
 #include "gic_runtime.h"
 

@@ -1017,10 +1017,10 @@ static int exponential(const gic_model *model, void *self, gic_real time, gic_re
 /* ---- a step ------------------------------------------------------------------------------------------------ */
 
 /* One step from `from` to `next`; the rate at the start goes to `rate`, and *newest points to it as soon as it is
- * known. `past` has the two rates before the step, of IMEX and EXP3 one; NULL: RK4, or an implicit `method` without
- * history. */
+ * known. `past` points to the two rates before the step, of IMEX and EXP3 to one; NULL: RK4, or an implicit `method`
+ * without history. */
 static int advance(const gic_model *model, void *self, gic_real time, gic_real step, int32_t method,
-                   const gic_real *from, const gic_real *past, gic_real *rate, gic_real *next, gic_real *work,
+                   const gic_real *from, const gic_real *const *past, gic_real *rate, gic_real *next, gic_real *work,
                    const gic_real **newest)
 {
     const int32_t n = model->slow_count + model->fast_count, unchecked = ((const gic_head *)self)->unchecked;
@@ -1030,11 +1030,11 @@ static int advance(const gic_model *model, void *self, gic_real time, gic_real s
     *newest = rate;
     const int checked = ((const gic_head *)self)->unchecked > unchecked;
     if (past && method == GIC_IMEX)
-        status = imex(model, self, time, step, from, rate, past, checked, next);
+        status = imex(model, self, time, step, from, rate, past[0], checked, next);
     else if (method == GIC_EXP3)
-        status = exponential(model, self, time, step, from, rate, past, checked, next);
+        status = exponential(model, self, time, step, from, rate, past ? past[0] : NULL, checked, next);
     else if (past)
-        adams_bashforth(n, step, from, rate, past, past + n, next);
+        adams_bashforth(n, step, from, rate, past[0], past[1], next);
     else if (method > GIC_RK4)
         status = rosenbrock(model, self, time, step, method, from, rate, checked, next);
     else
@@ -1186,23 +1186,45 @@ static int locate_change(const gic_model *model, void *self, const Rest *rest, g
     return found == 1 ? GIC_OK : found == 0 ? GIC_ERROR_EVENTS : found;
 }
 
-/* The rest of a step by RK4 or the implicit method that made it, in `parts` parts. The rate at its start goes to
- * `first`; work: 4 rows of a state. */
-static int finish_step(const gic_model *model, void *self, const Rest *rest, int32_t parts, gic_real *first,
-                       gic_real *work)
+/* A part of a step, of `method`, which is AB3, RK4 or implicit. AB3 begins with two parts of RK4; past: rates of the
+ * two parts before, which it keeps. The rate at the start goes to `rate`. */
+static int advance_part(const gic_model *model, void *self, gic_real time, gic_real step, int32_t method,
+                        const gic_real *from, int32_t part, const gic_real *past[2], gic_real *rate, gic_real *next,
+                        gic_real *work, const gic_real **newest)
+{
+    const int bashforth = method == GIC_AB3;
+    const int status = advance(model, self, time, step, bashforth ? GIC_RK4 : method, from,
+                               bashforth && part > 1 ? past : NULL, rate, next, work, newest);
+    past[1] = past[0];
+    past[0] = rate;
+    return status;
+}
+
+/* The rest of a step in `parts` parts by `method`. The rate at its start goes to `first`; work: 4 rows of a state. */
+static int finish_step(const gic_model *model, void *self, const Rest *rest, int32_t parts, int32_t method,
+                       gic_real *first, gic_real *work)
 {
     const int32_t n = model->slow_count + model->fast_count;
-    const gic_real part = rest->length / (gic_real)parts, *newest;
-    gic_real *state = array_at(self, model->state_offset);
+    const gic_real part = rest->length / (gic_real)parts, *newest, *past[2] = {NULL, NULL};
+    gic_real *const state = array_at(self, model->state_offset), *const spare[] = {work, work + 2 * n, work + 3 * n};
     int status = GIC_OK;
     for (int32_t k = 0; k < parts && status == GIC_OK; ++k) {
         const gic_real time = rest->end - (gic_real)(parts - k) * part;
-        status = advance(model, self, time, part, ((const gic_head *)self)->method, state, NULL, k == 0 ? first : work,
-                         work + n, work + 2 * n, &newest);
+        status = advance_part(model, self, time, part, method, state, k, past, k == 0 ? first : spare[(k - 1) % 3],
+                              work + n, work + 2 * n, &newest);
         if (status == GIC_OK)
             copy(state, work + n, n);
     }
     return status;
+}
+
+/* The same where contacts change, by a method without history. */
+static int finish_piece(const gic_model *model, void *self, const Rest *rest, int32_t parts)
+{
+    const int32_t method = ((const gic_head *)self)->method;
+    gic_real *const scratch = array_at(self, model->scratch_offset);
+    return finish_step(model, self, rest, parts, method == GIC_AB3 ? GIC_RK4 : method, scratch,
+                       scratch + 3 * (model->slow_count + model->fast_count));
 }
 
 /* What gic_head.event says of the discrete state that is not as in before[]. */
@@ -1247,7 +1269,7 @@ static int change_gears(const gic_model *model, void *self)
         if (status == GIC_OK && share < GIC_R(1.0)) {
             rest.length *= GIC_R(1.0) - share;
             copy(scratch + 2 * n, state, n);
-            status = finish_step(model, self, &rest, head->ratio, scratch, to);
+            status = finish_step(model, self, &rest, head->ratio, head->method, scratch, to);
             rest.from = scratch + 2 * n;
             rest.rate = scratch;
         }
@@ -1501,7 +1523,7 @@ static int go_to_contact(const gic_model *model, void *self, const Rest *rest, u
 {
     gic_head *head = (gic_head *)self;
     gic_real at[GIC_CONTACTS], slope[GIC_CONTACTS];
-    gic_real *scratch = array_at(self, model->scratch_offset), *state = array_at(self, model->state_offset);
+    gic_real *const state = array_at(self, model->state_offset);
     const int32_t n = model->slow_count + model->fast_count;
     const uint64_t before = touch->above;
     const int count = number_of(changed);
@@ -1529,7 +1551,7 @@ static int go_to_contact(const gic_model *model, void *self, const Rest *rest, u
         piece.end = rest->end - (rest->length - piece.length);
         const int32_t parts = parts_of(head, piece.length);
         copy(state, rest->from, n);
-        status = finish_step(model, self, &piece, parts, scratch, scratch + 3 * n);
+        status = finish_piece(model, self, &piece, parts);
         if (status == GIC_OK)
             status = touch_at(model, self, piece.end, state, touch);
         if (status != GIC_OK)
@@ -1614,7 +1636,7 @@ static int make_piece(const gic_model *model, void *self, gic_real end, Rest *re
     rest->from = scratch + 2 * n;
     rest->rate = scratch;
     rest->end = end;
-    const int status = finish_step(model, self, rest, parts_of(head, rest->length), scratch, scratch + 3 * n);
+    const int status = finish_piece(model, self, rest, parts_of(head, rest->length));
     return status == GIC_OK ? touch_at(model, self, end, state, b) : status;
 }
 
@@ -1917,8 +1939,9 @@ static int plain_step(const gic_model *model, void *self, gic_real step, int32_t
     const gic_real *newest = array_at(self, model->rate_offset);
     copy(input_before, array_at(self, model->input_offset), model->input_count);
     head->hold = head->flip;
+    const gic_real *const past[] = {history, history + n};
     status = head->status = advance(model, self, gic_time(self), step, method, array_at(self, model->state_offset),
-                                    known > 0 && known == most ? history : NULL, rate, next, work, &newest);
+                                    known > 0 && known == most ? past : NULL, rate, next, work, &newest);
     if (status != GIC_OK)
         return give_up(model, self, step, status, newest, input_before);
     status = move_on(model, self, step, method, 1, known < most ? known + 1 : most, next, rate, known < 2);
@@ -2028,23 +2051,24 @@ static gic_real *last_rate(const Dual *dual)
     return w.increment + (MOST_STAGES - 1) * w.n;
 }
 
-/* A step without history: fast steps of everything, by RK4 where the method is AB3. After the second one row 3 has the
- * rate at its end. */
+/* A step without history: fast steps of everything, by AB3 after two of RK4 where the method is AB3. After the second
+ * one row 3 has the rate at its end. */
 static int start_dual(Dual *dual, int32_t known)
 {
     const gic_model *model = dual->model;
-    gic_real *from = array_at(dual->self, model->state_offset);
-    gic_real *link = dual->link;
+    const int32_t method = dual->method == GIC_AB3 ? GIC_AB3 : part_method(dual->method);
+    const gic_real *past[2] = {NULL, NULL}, *from = array_at(dual->self, model->state_offset);
+    gic_real *const link = dual->link;
     int status = known == 0 ? link_at(dual, 0, from, link + 4 * model->link_count) : GIC_OK;
     for (int32_t k = 0; k < dual->ratio && status == GIC_OK; ++k) {
-        gic_real *rate = row(dual, k == 0 ? 0 : 5 + k % 2), *next = row(dual, 1 + k % 2);
-        status = advance(model, dual->self, moment(dual, k), dual->step / (gic_real)dual->ratio,
-                         part_method(dual->method), from, NULL, rate, next, row(dual, 3), &dual->newest);
+        gic_real *const rate = row(dual, k == 0 ? 0 : 4 + k % 3);
+        dual->next = row(dual, 1 + k % 2);
+        status = advance_part(model, dual->self, moment(dual, k), dual->step / (gic_real)dual->ratio, method, from, k,
+                              past, rate, dual->next, row(dual, 3), &dual->newest);
         dual->fast[1] = dual->fast[0];
         dual->fast[0] = rate + model->slow_count;
-        from = next;
+        from = dual->next;
     }
-    dual->next = from;
     if (status == GIC_OK && known == 1)
         status = evaluate(model, dual->self, moment(dual, dual->ratio), from, row(dual, 3));
     if (status == GIC_OK && known == 1 && !gic_finite(row(dual, 3), model->slow_count))
@@ -2122,8 +2146,9 @@ static int step_slow(Dual *dual, gic_real *rate, gic_real *next)
         copy(next + slow, state + slow, model->fast_count);
         status = settle(model, dual->self, next);
     } else {
-        status = advance(model, dual->self, moment(dual, 0), dual->step, dual->method, state,
-                         dual->method >= GIC_IMEX ? last_rate(dual) : NULL, rate, next, row(dual, 3), &dual->newest);
+        const gic_real *const past = dual->method >= GIC_IMEX ? last_rate(dual) : NULL;
+        status = advance(model, dual->self, moment(dual, 0), dual->step, dual->method, state, past ? &past : NULL, rate,
+                         next, row(dual, 3), &dual->newest);
         copy(next + slow, state + slow, model->fast_count);
     }
     return status == GIC_OK ? link_at(dual, dual->ratio, next, dual->link + 3 * model->link_count) : status;

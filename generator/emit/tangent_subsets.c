@@ -91,7 +91,10 @@ static void write_knowns(const Generation *g, Text *out, int indent, bool wrench
 void tangent_knowns(void *context, Text *out, int indent)
 {
     const TangentExpansion *x = context;
+    const Formula *formula = x->g->plan->formula[x->g->class];
     write_knowns(x->g, out, indent, false);
+    if (block_reads(written_tangent(x->g, false), ARRAY_f, 0) || block_reads(written_tangent(x->g, true), ARRAY_f, 0))
+        line(out, indent, "const gic_real *const f = q + %d; /* the factors */", formula->layout.start_factors);
 }
 
 void tangent_react_knowns(void *context, Text *out, int indent)

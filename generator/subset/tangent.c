@@ -6,6 +6,8 @@
 #include "subset/subset.h"
 #include "subset/tangent.h"
 
+#include <string.h>
+
 bool motion_is_pose(int place)
 {
     return place < MOTION_OMEGA || place >= MOTION_S;
@@ -216,6 +218,55 @@ Seeds subset_seeds(const Formula *formula, const Along *along)
     return seeds;
 }
 
+/* The stored factor that says which one of two reflections (factorize_block.c) `solve` took: 1 / -(+-|x|) where its
+ * sign depends on `condition`, x[0]. 0: there is none. */
+static Ex sign_of_reflection(const Formula *formula, Ex condition)
+{
+    Dag *dag = formula->dag;
+    for (int i = 0; i < formula->solve.stores; ++i) {
+        const Store *store = &formula->solve.store[i];
+        const int slot = store->target.index - formula->layout.start_factors;
+        const Node *node = &dag->node[store->value];
+        if (store->target.array != ARRAY_start || slot < 0 || node->op != OP_DIV)
+            continue;
+        const bool minus = dag->node[node->arg[1]].op == OP_NEG;
+        const Node *length = &dag->node[minus ? dag->node[node->arg[1]].arg[0] : node->arg[1]];
+        if (length->op != OP_POSITIVE || length->arg[0] != condition)
+            continue;
+        const Ex stored = ex_input(dag, element_at(ARRAY_f, slot), NULL);
+        return minus ? ex_neg(dag, stored) : stored;
+    }
+    return 0;
+}
+
+/* The roots with the reflections that `solve` took, which wrote its factors. Where x[0] is 0 but for roundings, as in
+ * mechanisms that are drawn in a plane, another one would come as soon: derivatives of its factors are none of those.
+ */
+static void keep_reflections(const Formula *formula, Ex *root, int roots)
+{
+    Dag *dag = formula->dag;
+    const bool *needed = dag_needed(dag, root, roots);
+    const Ex nodes = (Ex)dag->nodes;
+    Ex *choice = NULL;
+    int choices = 0;
+    for (Ex e = 0; e < nodes; ++e)
+        if (needed[e] && dag->node[e].op == OP_POSITIVE && sign_of_reflection(formula, dag->node[e].arg[0]))
+            *POOL_PUSH(dag->pool, choice, choices) = e;
+    Ex *all = pool_alloc(dag->pool, (size_t)(roots + choices + 1) * sizeof *all);
+    memcpy(all, root, (size_t)roots * sizeof *all);
+    for (int i = 0; i < choices; ++i)
+        all[roots + i] = choice[i];
+    for (int i = 0; i < choices; ++i) { /* later ones depend on earlier ones */
+        const Ex from = all[roots + i];
+        const Ex to = ex_op(dag, OP_POSITIVE, sign_of_reflection(formula, dag->node[choice[i]].arg[0]),
+                            dag->node[from].arg[1], dag->node[from].arg[2]);
+        const Ex *image = dag_replace(dag, all, roots + choices, &from, &to, 1);
+        for (int r = 0; r < roots + choices; ++r)
+            all[r] = image[all[r]];
+    }
+    memcpy(root, all, (size_t)roots * sizeof *root);
+}
+
 /* Without the stores of a block that are not wanted. */
 static void drop_stores(const Formula *formula, TangentStores stores, Block *block)
 {
@@ -243,6 +294,8 @@ const Block *subset_tangent(const Formula *balanced, const Along *along, Tangent
     Ex *root = pool_alloc(dag->pool, ((size_t)block->stores + 1) * sizeof *root);
     for (int i = 0; i < block->stores; ++i)
         root[i] = block->store[i].value;
+    if (formula->react.stores)
+        keep_reflections(formula, root, block->stores);
     const Ex *image = subset_read_stored(formula, root, block->stores);
     for (int i = 0; i < block->stores; ++i)
         block->store[i].value = image[root[i]];

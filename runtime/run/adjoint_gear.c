@@ -45,16 +45,10 @@ int gear_back(Back *back, const TrailStep *step)
     const int parts = tangent_parts(run, step->dual), states = run->states, there = step->gear;
     const TrailEvent *settled = trail_event(run->trail, there + 1), *change = trail_event(run->trail, there + 2);
     const double h = step->length, *bend = change->number + states;
-    int status = GIC_OK;
-    double none[states + 1], by_share = 0;
-    memset(none, 0, sizeof none);
-    double by_late = 0;
+    double by_share = 0, by_late = 0;
     back->rest = (Rest){.going = true, .start = change->time, .end = step->start + h, .by_late = &by_late};
-    for (int k = parts - 1; k >= 0 && status == GIC_OK; --k) {
-        const int first = there + 3 + k * (RK4_STAGES + 1);
-        settle_back(back, trail_event(run->trail, first + RK4_STAGES));
-        status = rk4_back(back, first, (back->rest.end - back->rest.start) / parts, none, 0);
-    }
+    clear_moments(back);
+    int status = parts_back(back, there + 3, parts, (back->rest.end - back->rest.start) / parts, 0);
     back->rest.going = false;
     if (status != GIC_OK)
         return status;

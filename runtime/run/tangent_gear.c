@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT
  * Changes of gear in a run with derivatives, as gic_runtime.c makes them: the cubic through both ends of the step is
- * searched for the first share s of it at which the gear changes, the state there goes on in the new gear, and RK4
- * makes the rest of the step. A number g that decides on it, the guard, is 0 there, so that s changes by -dg / (dg/ds),
- * where dg is the change at a share that stays, and with it the state at the change and how long the rest is. Where an
- * input that jumps changes the gear, or it changes at the start of a step, s stays. */
+ * searched for the first share s of it at which the gear changes, and the state there goes on in the new gear through
+ * the rest of the step, by RK4, or in parts, from the third one by AB3. A number g that decides on it, the guard, is 0
+ * there, so that s changes by -dg / (dg/ds), where dg is the change at a share that stays, and with it the state at the
+ * change and how long the rest is. Where an input that jumps changes the gear, or it changes at the start of a step, s
+ * stays. */
 #include "engine/engine.h"
 #include "gic_runtime.h"
 #include "model/powertrain_numbers.h"
@@ -248,7 +249,7 @@ static int finish(TangentRun *run, const Ends *ends, int parts)
     gic_restart(head, gic_time(run->copy));
     head->locate = 0; /* the step has been looked at */
     for (int k = 0; k < parts && status == GIC_OK; ++k)
-        status = gic_step(&run->descriptor, run->both, (run->rest.end - run->rest.start) / parts, GIC_RK4);
+        status = gic_step(&run->descriptor, run->both, (run->rest.end - run->rest.start) / parts, run->scene->method);
     run->rest.going = false;
     head->locate = kept.locate;
     head->start_time = kept.start_time;

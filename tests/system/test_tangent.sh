@@ -32,6 +32,7 @@ check 'air' compare "$root/tests/data/laws/aero.veh"
 check 'bodies on bushings alone' compare "$root/tests/data/laws/free.veh" -n 2
 check 'gears and couplers' compare "$root/tests/data/laws/coupled.veh" -n 2
 check 'bodies that slide and turn on axes' compare "$root/tests/data/laws/sliders.veh"
+check 'forces in a loop drawn in a plane' compare "$root/tests/data/laws/planar_loop.veh"
 sed 's/^base: box/base: ground/; s/^joints:/joints:\n  stand: {type: prismatic, bodies: [ground, box], axis: [1, 0, 0]}/; s/^coordinates:/coordinates:\n  along: {type: translation, bodies: [ground, box], axis: [1, 0, 0], range: [-1, 1]}/; s/^model: .*/model: stood/' \
     "$root/tests/data/laws/sliders.veh" >"$work/stood.veh" && check 'on a rail of the ground' compare "$work/stood.veh"
 {
