@@ -406,10 +406,11 @@ int gic_step(const gic_model *model, void *self, gic_real step, int32_t method);
 #define GIC_RATIOS 10000
 
 /* One step of `step` seconds of AB3 in which the fast states take `ratio` steps, 1 to GIC_RATIOS: TIRES.md section 9.
- * The first two steps are `ratio` steps each of everything, two by RK4 and then AB3, and one more right-hand side. As gic_step otherwise, a new ratio
- * restarts the history too; with ratio 1, or a model without fast states, it is gic_step. A step with history costs one
- * right-hand side, one evaluation of the links (at its end) and `ratio` - 1 of the fast rates, for those at its start
- * come with the right-hand side. Without an input function inputs stay through the step, its end included. */
+ * The first two steps are `ratio` steps each of everything, two by RK4 and then AB3, and one more right-hand side. As
+ * gic_step otherwise, a new ratio restarts the history too; with ratio 1, or a model without fast states, it is
+ * gic_step. A step with history costs one right-hand side, one evaluation of the links (at its end) and `ratio` - 1 of
+ * the fast rates, for those at its start come with the right-hand side. Without an input function inputs stay through
+ * the step, its end included. */
 #define gic_step_dual GIC_NAME(gic_step_dual)
 int gic_step_dual(const gic_model *model, void *self, gic_real step, int32_t ratio);
 
