@@ -80,8 +80,9 @@ void adjoint_set(int count, double factor, const double *from, double *to);
 int gear_back(Back *back, const TrailStep *step);
 /* adjoint_dual.c: back through a step of dual rate. weight: of the output at its start. Returns a status. */
 int dual_back(Back *back, const TrailStep *step, double weight);
-/* Back through `parts` parts of h seconds, two by RK4 and others by AB3, whose events begin at `first`: right-hand sides
- * and the settled state of each. Derivatives by the rates at their starts are in back->moment, see fast_moment(). */
+/* Back through `parts` parts of h seconds, two by RK4 and others by AB3, whose events begin at `first`: right-hand
+ * sides and the settled state of each. Derivatives by the rates at their starts are in back->moment, see fast_moment().
+ */
 int parts_back(Back *back, int first, int parts, double h, double weight);
 /* Derivatives [states] by the rates at fast step k, from -2. */
 double *fast_moment(const Back *back, int k);
