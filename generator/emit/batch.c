@@ -362,14 +362,12 @@ static void write_load(void *context, Text *out, int indent)
     write_batch_exchange(context, out, indent, true);
 }
 
-/* Newton's iteration might end elsewhere if it began again; closed forms give the same bits again. */
+/* Where a recovery follows the one before it, as Newton's iteration does, it might end elsewhere if it began again;
+ * others give the same bits again. */
 static void write_kept_work(void *context, Text *out, int indent)
 {
     const Generation *g = context;
-    bool closed = true;
-    for (int c = 0; c < g->sequence->classes; ++c)
-        closed = closed && g->plan->formula[c]->closed;
-    line(out, indent, closed ? "before->recovered = lane_whole(0);" : "before->work = self->work;");
+    line(out, indent, followed_bodies(g->plan) ? "before->work = self->work;" : "before->recovered = lane_whole(0);");
 }
 
 static void write_store(void *context, Text *out, int indent)
