@@ -230,7 +230,8 @@ sed 's/^ratio.*/&\nsteady: 0.001/' "$work/driven.scene" >"$work/steady.scene"
 
 # near A B: the same runs with the same statuses and times, numbers apart by 1e-9 relative to the larger of 1 and each; a
 # run that diverges ends at a number of any size: its own are not compared. With `steady` 1e-8: between fast steps slips go
-# straight on with what roundings left in their rates, which is 1e-9 N of forces (1.3e-9), 1e-13 of the load of a wheel
+# straight on with what other elementary functions left in their rates, which is 1e-9 N of forces, 1e-13 of the load of a
+# wheel; with libm's lanes have all bits of these steps, too (test_batch_vehicles)
 near() {
     awk -F, -v most="$([ "$kind" = steady ] && echo 1e-8 || echo 1e-9)" 'NR == FNR { for (i = 1; i <= NF; ++i) a[FNR, i] = $i; n = FNR; next }
              FNR > 1 { for (i = 1; i <= NF; ++i) { d = $i - a[FNR, i]; s = $i < 0 ? -$i : $i
