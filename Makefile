@@ -67,7 +67,7 @@ programs_of_folders := $(wildcard generator/*.c) $(wildcard runtime/gicrun/*.c r
 sources := $(filter-out $(programs_of_folders),$(wildcard generator/*/*.c runtime/*.c runtime/*/*.c))
 # gicgen carries what it copies into its output, gicrun what it compiles with it
 embedded := $(sort $(wildcard templates/*.in templates/fmu/*)) LICENSE runtime/gic_runtime.h runtime/gic_runtime.c runtime/gic_batch.h runtime/gic_lanes.h \
-    $(addprefix runtime/,gic_road.h gic_road.c) $(foreach name,scene/profile_form scene/driver scene/hands run/knot_cross,runtime/$(name).h runtime/$(name).c)
+    $(addprefix runtime/,gic_road.h gic_road.c gic_road_lanes.h) $(foreach name,scene/profile_form scene/driver scene/hands run/knot_cross,runtime/$(name).h runtime/$(name).c)
 
 objects := $(sources:%.c=$(BUILD)/%.o) $(BUILD)/embedded.o
 archive := $(BUILD)/gicgen.a

@@ -51,7 +51,7 @@
  */
 #include "andrews.h"
 
-#if ANDREWS_H != 0x0e32445b
+#if ANDREWS_H != 0x46db56a3
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 

@@ -50,12 +50,12 @@
  *   outputs, when asked for                                   98       182       0      1        10
  */
 #ifndef ANDREWS_H
-#define ANDREWS_H 0x0e32445b
+#define ANDREWS_H 0x46db56a3
 
 #include "gic_runtime.h"
 
-#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 13
-#error "andrews.h was generated for version 13 of gic_runtime.h: use that one, or generate the model again"
+#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 14
+#error "andrews.h was generated for version 14 of gic_runtime.h: use that one, or generate the model again"
 #endif
 
 #ifdef __cplusplus
@@ -64,7 +64,7 @@ extern "C" {
 
 /* Sizes and places. An array that would be empty has one unused element. */
 enum {
-    ANDREWS_ABI = 13,
+    ANDREWS_ABI = 14,
     ANDREWS_FREE_BASE = 0,
     ANDREWS_STATES = 2,
     ANDREWS_SLOW = 2,

@@ -80,7 +80,7 @@
  */
 #include "five_link.h"
 
-#if FIVE_LINK_H != 0x1c2e589f
+#if FIVE_LINK_H != 0x7af415c9
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 

@@ -79,12 +79,12 @@
  * With head.most = N, 4 ratio + 4 or more, no step takes more than N, whatever happens in it (EVENTS.md section 10).
  */
 #ifndef FIVE_LINK_H
-#define FIVE_LINK_H 0x1c2e589f
+#define FIVE_LINK_H 0x7af415c9
 
 #include "gic_runtime.h"
 
-#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 13
-#error "five_link.h was generated for version 13 of gic_runtime.h: use that one, or generate the model again"
+#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 14
+#error "five_link.h was generated for version 14 of gic_runtime.h: use that one, or generate the model again"
 #endif
 
 #ifdef __cplusplus
@@ -94,7 +94,7 @@ extern "C" {
 /* Sizes and places. An array that would be empty has one unused element. */
 enum {
     FIVE_LINK_CONTACTS = 4,
-    FIVE_LINK_ABI = 13,
+    FIVE_LINK_ABI = 14,
     FIVE_LINK_FREE_BASE = 1,
     FIVE_LINK_STATES = 23,
     FIVE_LINK_SLOW = 23,

@@ -137,7 +137,7 @@
  */
 #include "formula_student.h"
 
-#if FORMULA_STUDENT_H != 0x8574b14b
+#if FORMULA_STUDENT_H != 0xcf5d2361
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 

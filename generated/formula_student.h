@@ -136,12 +136,12 @@
  * With head.most = N, 4 ratio + 4 or more, no step takes more than N, whatever happens in it (EVENTS.md section 10).
  */
 #ifndef FORMULA_STUDENT_H
-#define FORMULA_STUDENT_H 0x8574b14b
+#define FORMULA_STUDENT_H 0xcf5d2361
 
 #include "gic_runtime.h"
 
-#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 13
-#error "formula_student.h was generated for version 13 of gic_runtime.h: use that one, or generate the model again"
+#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 14
+#error "formula_student.h was generated for version 14 of gic_runtime.h: use that one, or generate the model again"
 #endif
 
 #ifdef __cplusplus
@@ -154,7 +154,7 @@ enum {
     FORMULA_STUDENT_LINKS = 48,
     FORMULA_STUDENT_GRIP = 28,
     FORMULA_STUDENT_CONTACTS = 12,
-    FORMULA_STUDENT_ABI = 13,
+    FORMULA_STUDENT_ABI = 14,
     FORMULA_STUDENT_FREE_BASE = 1,
     FORMULA_STUDENT_STATES = 41,
     FORMULA_STUDENT_SLOW = 21,

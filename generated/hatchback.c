@@ -123,7 +123,7 @@
  */
 #include "hatchback.h"
 
-#if HATCHBACK_H != 0xbf858a3d
+#if HATCHBACK_H != 0xbf5e3dad
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 

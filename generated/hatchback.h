@@ -122,12 +122,12 @@
  * With head.most = N, 4 ratio + 4 or more, no step takes more than N, whatever happens in it (EVENTS.md section 10).
  */
 #ifndef HATCHBACK_H
-#define HATCHBACK_H 0xbf858a3d
+#define HATCHBACK_H 0xbf5e3dad
 
 #include "gic_runtime.h"
 
-#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 13
-#error "hatchback.h was generated for version 13 of gic_runtime.h: use that one, or generate the model again"
+#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 14
+#error "hatchback.h was generated for version 14 of gic_runtime.h: use that one, or generate the model again"
 #endif
 
 #ifdef __cplusplus
@@ -144,7 +144,7 @@ enum {
     HATCHBACK_ENGINE = 18, /* engine.speed among the fast states */
     HATCHBACK_GEAR = 1, /* transmission.gear in discrete[] */
     HATCHBACK_CONTACTS = 12,
-    HATCHBACK_ABI = 13,
+    HATCHBACK_ABI = 14,
     HATCHBACK_FREE_BASE = 1,
     HATCHBACK_STATES = 85,
     HATCHBACK_SLOW = 65,

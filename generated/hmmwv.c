@@ -86,7 +86,7 @@
  */
 #include "hmmwv.h"
 
-#if HMMWV_H != 0xeee68283
+#if HMMWV_H != 0x6159269d
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 

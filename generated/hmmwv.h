@@ -85,12 +85,12 @@
  * With head.most = N, 4 ratio + 4 or more, no step takes more than N, whatever happens in it (EVENTS.md section 10).
  */
 #ifndef HMMWV_H
-#define HMMWV_H 0xeee68283
+#define HMMWV_H 0x6159269d
 
 #include "gic_runtime.h"
 
-#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 13
-#error "hmmwv.h was generated for version 13 of gic_runtime.h: use that one, or generate the model again"
+#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 14
+#error "hmmwv.h was generated for version 14 of gic_runtime.h: use that one, or generate the model again"
 #endif
 
 #ifdef __cplusplus
@@ -100,7 +100,7 @@ extern "C" {
 /* Sizes and places. An array that would be empty has one unused element. */
 enum {
     HMMWV_CONTACTS = 4,
-    HMMWV_ABI = 13,
+    HMMWV_ABI = 14,
     HMMWV_FREE_BASE = 1,
     HMMWV_STATES = 23,
     HMMWV_SLOW = 23,

@@ -88,7 +88,7 @@
  */
 #include "hmmwv14.h"
 
-#if HMMWV14_H != 0xda11a015
+#if HMMWV14_H != 0x31ab9ce5
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 

@@ -87,12 +87,12 @@
  * With head.most = N, 4 ratio + 4 or more, no step takes more than N, whatever happens in it (EVENTS.md section 10).
  */
 #ifndef HMMWV14_H
-#define HMMWV14_H 0xda11a015
+#define HMMWV14_H 0x31ab9ce5
 
 #include "gic_runtime.h"
 
-#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 13
-#error "hmmwv14.h was generated for version 13 of gic_runtime.h: use that one, or generate the model again"
+#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 14
+#error "hmmwv14.h was generated for version 14 of gic_runtime.h: use that one, or generate the model again"
 #endif
 
 #ifdef __cplusplus
@@ -102,7 +102,7 @@ extern "C" {
 /* Sizes and places. An array that would be empty has one unused element. */
 enum {
     HMMWV14_CONTACTS = 4,
-    HMMWV14_ABI = 13,
+    HMMWV14_ABI = 14,
     HMMWV14_FREE_BASE = 1,
     HMMWV14_STATES = 23,
     HMMWV14_SLOW = 23,

@@ -86,7 +86,7 @@
  */
 #include "hmmwv_full.h"
 
-#if HMMWV_FULL_H != 0x989eb49b
+#if HMMWV_FULL_H != 0xe2982eb5
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 

@@ -85,12 +85,12 @@
  * With head.most = N, 4 ratio + 4 or more, no step takes more than N, whatever happens in it (EVENTS.md section 10).
  */
 #ifndef HMMWV_FULL_H
-#define HMMWV_FULL_H 0x989eb49b
+#define HMMWV_FULL_H 0xe2982eb5
 
 #include "gic_runtime.h"
 
-#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 13
-#error "hmmwv_full.h was generated for version 13 of gic_runtime.h: use that one, or generate the model again"
+#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 14
+#error "hmmwv_full.h was generated for version 14 of gic_runtime.h: use that one, or generate the model again"
 #endif
 
 #ifdef __cplusplus
@@ -100,7 +100,7 @@ extern "C" {
 /* Sizes and places. An array that would be empty has one unused element. */
 enum {
     HMMWV_FULL_CONTACTS = 12,
-    HMMWV_FULL_ABI = 13,
+    HMMWV_FULL_ABI = 14,
     HMMWV_FULL_FREE_BASE = 1,
     HMMWV_FULL_STATES = 23,
     HMMWV_FULL_SLOW = 23,

@@ -90,7 +90,7 @@
  */
 #include "hmmwv_tires.h"
 
-#if HMMWV_TIRES_H != 0x47b35989
+#if HMMWV_TIRES_H != 0x7ab4193b
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 

@@ -89,12 +89,12 @@
  * With head.most = N, 4 ratio + 4 or more, no step takes more than N, whatever happens in it (EVENTS.md section 10).
  */
 #ifndef HMMWV_TIRES_H
-#define HMMWV_TIRES_H 0x47b35989
+#define HMMWV_TIRES_H 0x7ab4193b
 
 #include "gic_runtime.h"
 
-#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 13
-#error "hmmwv_tires.h was generated for version 13 of gic_runtime.h: use that one, or generate the model again"
+#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 14
+#error "hmmwv_tires.h was generated for version 14 of gic_runtime.h: use that one, or generate the model again"
 #endif
 
 #ifdef __cplusplus
@@ -107,7 +107,7 @@ enum {
     HMMWV_TIRES_LINKS = 48,
     HMMWV_TIRES_GRIP = 28,
     HMMWV_TIRES_CONTACTS = 4,
-    HMMWV_TIRES_ABI = 13,
+    HMMWV_TIRES_ABI = 14,
     HMMWV_TIRES_FREE_BASE = 1,
     HMMWV_TIRES_STATES = 37,
     HMMWV_TIRES_SLOW = 21,

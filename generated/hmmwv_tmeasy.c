@@ -90,7 +90,7 @@
  */
 #include "hmmwv_tmeasy.h"
 
-#if HMMWV_TMEASY_H != 0x5cbbdd21
+#if HMMWV_TMEASY_H != 0xbe0f0769
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 

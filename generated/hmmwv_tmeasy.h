@@ -89,12 +89,12 @@
  * With head.most = N, 4 ratio + 4 or more, no step takes more than N, whatever happens in it (EVENTS.md section 10).
  */
 #ifndef HMMWV_TMEASY_H
-#define HMMWV_TMEASY_H 0x5cbbdd21
+#define HMMWV_TMEASY_H 0xbe0f0769
 
 #include "gic_runtime.h"
 
-#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 13
-#error "hmmwv_tmeasy.h was generated for version 13 of gic_runtime.h: use that one, or generate the model again"
+#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 14
+#error "hmmwv_tmeasy.h was generated for version 14 of gic_runtime.h: use that one, or generate the model again"
 #endif
 
 #ifdef __cplusplus
@@ -107,7 +107,7 @@ enum {
     HMMWV_TMEASY_LINKS = 48,
     HMMWV_TMEASY_GRIP = 28,
     HMMWV_TMEASY_CONTACTS = 4,
-    HMMWV_TMEASY_ABI = 13,
+    HMMWV_TMEASY_ABI = 14,
     HMMWV_TMEASY_FREE_BASE = 1,
     HMMWV_TMEASY_STATES = 37,
     HMMWV_TMEASY_SLOW = 21,

@@ -91,7 +91,7 @@
  */
 #include "hmmwv_vehicle.h"
 
-#if HMMWV_VEHICLE_H != 0x9658ad1f
+#if HMMWV_VEHICLE_H != 0x3963eaa7
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 

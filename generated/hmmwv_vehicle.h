@@ -90,12 +90,12 @@
  * With head.most = N, 4 ratio + 4 or more, no step takes more than N, whatever happens in it (EVENTS.md section 10).
  */
 #ifndef HMMWV_VEHICLE_H
-#define HMMWV_VEHICLE_H 0x9658ad1f
+#define HMMWV_VEHICLE_H 0x3963eaa7
 
 #include "gic_runtime.h"
 
-#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 13
-#error "hmmwv_vehicle.h was generated for version 13 of gic_runtime.h: use that one, or generate the model again"
+#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 14
+#error "hmmwv_vehicle.h was generated for version 14 of gic_runtime.h: use that one, or generate the model again"
 #endif
 
 #ifdef __cplusplus
@@ -112,7 +112,7 @@ enum {
     HMMWV_VEHICLE_ENGINE = 16, /* engine.speed among the fast states */
     HMMWV_VEHICLE_GEAR = 1, /* transmission.gear in discrete[] */
     HMMWV_VEHICLE_CONTACTS = 12,
-    HMMWV_VEHICLE_ABI = 13,
+    HMMWV_VEHICLE_ABI = 14,
     HMMWV_VEHICLE_FREE_BASE = 1,
     HMMWV_VEHICLE_STATES = 39,
     HMMWV_VEHICLE_SLOW = 21,

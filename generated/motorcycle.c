@@ -67,7 +67,7 @@
  */
 #include "motorcycle.h"
 
-#if MOTORCYCLE_H != 0x8b10cde3
+#if MOTORCYCLE_H != 0x939c398d
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 

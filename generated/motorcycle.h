@@ -66,12 +66,12 @@
  * With head.most = N, 4 ratio + 4 or more, no step takes more than N, whatever happens in it (EVENTS.md section 10).
  */
 #ifndef MOTORCYCLE_H
-#define MOTORCYCLE_H 0x8b10cde3
+#define MOTORCYCLE_H 0x939c398d
 
 #include "gic_runtime.h"
 
-#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 13
-#error "motorcycle.h was generated for version 13 of gic_runtime.h: use that one, or generate the model again"
+#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 14
+#error "motorcycle.h was generated for version 14 of gic_runtime.h: use that one, or generate the model again"
 #endif
 
 #ifdef __cplusplus
@@ -84,7 +84,7 @@ enum {
     MOTORCYCLE_LINKS = 24,
     MOTORCYCLE_GRIP = 28,
     MOTORCYCLE_CONTACTS = 6,
-    MOTORCYCLE_ABI = 13,
+    MOTORCYCLE_ABI = 14,
     MOTORCYCLE_FREE_BASE = 1,
     MOTORCYCLE_STATES = 34,
     MOTORCYCLE_SLOW = 21,

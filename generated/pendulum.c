@@ -29,7 +29,7 @@
  */
 #include "pendulum.h"
 
-#if PENDULUM_H != 0x27315099
+#if PENDULUM_H != 0x121c863b
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 

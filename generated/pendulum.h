@@ -28,12 +28,12 @@
  *   outputs, when asked for                                    2        12       0      0         0
  */
 #ifndef PENDULUM_H
-#define PENDULUM_H 0x27315099
+#define PENDULUM_H 0x121c863b
 
 #include "gic_runtime.h"
 
-#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 13
-#error "pendulum.h was generated for version 13 of gic_runtime.h: use that one, or generate the model again"
+#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 14
+#error "pendulum.h was generated for version 14 of gic_runtime.h: use that one, or generate the model again"
 #endif
 
 #ifdef __cplusplus
@@ -42,7 +42,7 @@ extern "C" {
 
 /* Sizes and places. An array that would be empty has one unused element. */
 enum {
-    PENDULUM_ABI = 13,
+    PENDULUM_ABI = 14,
     PENDULUM_FREE_BASE = 0,
     PENDULUM_STATES = 2,
     PENDULUM_SLOW = 2,

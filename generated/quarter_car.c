@@ -56,7 +56,7 @@
  */
 #include "quarter_car.h"
 
-#if QUARTER_CAR_H != 0xce7949ad
+#if QUARTER_CAR_H != 0x3a42c653
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 

@@ -55,12 +55,12 @@
  * With head.most = N, 4 ratio + 4 or more, no step takes more than N, whatever happens in it (EVENTS.md section 10).
  */
 #ifndef QUARTER_CAR_H
-#define QUARTER_CAR_H 0xce7949ad
+#define QUARTER_CAR_H 0x3a42c653
 
 #include "gic_runtime.h"
 
-#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 13
-#error "quarter_car.h was generated for version 13 of gic_runtime.h: use that one, or generate the model again"
+#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 14
+#error "quarter_car.h was generated for version 14 of gic_runtime.h: use that one, or generate the model again"
 #endif
 
 #ifdef __cplusplus
@@ -70,7 +70,7 @@ extern "C" {
 /* Sizes and places. An array that would be empty has one unused element. */
 enum {
     QUARTER_CAR_CONTACTS = 1,
-    QUARTER_CAR_ABI = 13,
+    QUARTER_CAR_ABI = 14,
     QUARTER_CAR_FREE_BASE = 0,
     QUARTER_CAR_STATES = 4,
     QUARTER_CAR_SLOW = 4,

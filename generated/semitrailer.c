@@ -130,7 +130,7 @@
  */
 #include "semitrailer.h"
 
-#if SEMITRAILER_H != 0x262d7b59
+#if SEMITRAILER_H != 0x0b0b8475
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 

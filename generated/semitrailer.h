@@ -129,12 +129,12 @@
  * With head.most = N, 4 ratio + 4 or more, no step takes more than N, whatever happens in it (EVENTS.md section 10).
  */
 #ifndef SEMITRAILER_H
-#define SEMITRAILER_H 0x262d7b59
+#define SEMITRAILER_H 0x0b0b8475
 
 #include "gic_runtime.h"
 
-#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 13
-#error "semitrailer.h was generated for version 13 of gic_runtime.h: use that one, or generate the model again"
+#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 14
+#error "semitrailer.h was generated for version 14 of gic_runtime.h: use that one, or generate the model again"
 #endif
 
 #ifdef __cplusplus
@@ -147,7 +147,7 @@ enum {
     SEMITRAILER_LINKS = 216,
     SEMITRAILER_GRIP = 28,
     SEMITRAILER_CONTACTS = 38,
-    SEMITRAILER_ABI = 13,
+    SEMITRAILER_ABI = 14,
     SEMITRAILER_FREE_BASE = 1,
     SEMITRAILER_STATES = 109,
     SEMITRAILER_SLOW = 37,

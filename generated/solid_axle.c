@@ -75,7 +75,7 @@
  */
 #include "solid_axle.h"
 
-#if SOLID_AXLE_H != 0x082883c3
+#if SOLID_AXLE_H != 0x7136385b
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 

@@ -74,12 +74,12 @@
  * With head.most = N, 4 ratio + 4 or more, no step takes more than N, whatever happens in it (EVENTS.md section 10).
  */
 #ifndef SOLID_AXLE_H
-#define SOLID_AXLE_H 0x082883c3
+#define SOLID_AXLE_H 0x7136385b
 
 #include "gic_runtime.h"
 
-#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 13
-#error "solid_axle.h was generated for version 13 of gic_runtime.h: use that one, or generate the model again"
+#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 14
+#error "solid_axle.h was generated for version 14 of gic_runtime.h: use that one, or generate the model again"
 #endif
 
 #ifdef __cplusplus
@@ -89,7 +89,7 @@ extern "C" {
 /* Sizes and places. An array that would be empty has one unused element. */
 enum {
     SOLID_AXLE_CONTACTS = 4,
-    SOLID_AXLE_ABI = 13,
+    SOLID_AXLE_ABI = 14,
     SOLID_AXLE_FREE_BASE = 1,
     SOLID_AXLE_STATES = 23,
     SOLID_AXLE_SLOW = 23,

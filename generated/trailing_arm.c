@@ -78,7 +78,7 @@
  */
 #include "trailing_arm.h"
 
-#if TRAILING_ARM_H != 0xedf747ff
+#if TRAILING_ARM_H != 0x145f6561
 #error "this file and its header are not of the same run of gicgen: generate both again"
 #endif
 

@@ -77,12 +77,12 @@
  * With head.most = N, 4 ratio + 4 or more, no step takes more than N, whatever happens in it (EVENTS.md section 10).
  */
 #ifndef TRAILING_ARM_H
-#define TRAILING_ARM_H 0xedf747ff
+#define TRAILING_ARM_H 0x145f6561
 
 #include "gic_runtime.h"
 
-#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 13
-#error "trailing_arm.h was generated for version 13 of gic_runtime.h: use that one, or generate the model again"
+#if !defined(GIC_ABI_VERSION) || GIC_ABI_VERSION != 14
+#error "trailing_arm.h was generated for version 14 of gic_runtime.h: use that one, or generate the model again"
 #endif
 
 #ifdef __cplusplus
@@ -92,7 +92,7 @@ extern "C" {
 /* Sizes and places. An array that would be empty has one unused element. */
 enum {
     TRAILING_ARM_CONTACTS = 4,
-    TRAILING_ARM_ABI = 13,
+    TRAILING_ARM_ABI = 14,
     TRAILING_ARM_FREE_BASE = 1,
     TRAILING_ARM_STATES = 23,
     TRAILING_ARM_SLOW = 23,

@@ -152,7 +152,7 @@ static piece piece_at(const gic_road_table *table, gic_real x, gic_real y)
     } else if (x < at[guess + 1]) {
         low = guess;
         high = guess + 1;
-    } else {
+    } else if (guess + 1 < high) {
         low = guess + 1;
     }
     while (high - low > 1) {
@@ -396,6 +396,7 @@ int gic_road_iso8608_setup(gic_road_grid *road, const gic_iso8608 *profile, gic_
     road->head.friction = NULL;
     road->head.bend = gic_grid_bend;
     road->head.friction_slope = NULL;
+    road->head.kind = GIC_ROAD_GRID;
     road->x0 = profile->start;
     road->dx = spacing;
     road->nx = count;

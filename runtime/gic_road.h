@@ -4,7 +4,7 @@
  * allocation, no globals, arrays belong to the caller. Generated code knows only the head, struct gic_road: whoever has
  * a road of his own needs neither of these two files.
  *
- *     static const gic_road_plane hill = {{gic_plane_height, NULL, gic_plane_bend, NULL},
+ *     static const gic_road_plane hill = {{gic_plane_height, NULL, gic_plane_bend, NULL, GIC_ROAD_PLANE},
  *         0, GIC_R(0.05), 0};
  *     car.head.road = &hill.head;
  *

@@ -26,7 +26,7 @@ extern "C" {
 #endif
 
 /* Increased when generated code and runtime of different versions no longer fit together. */
-#define GIC_ABI_VERSION 13
+#define GIC_ABI_VERSION 14
 
 /* The number type of everything: compile runtime and generated code with GIC_FLOAT for single precision. The
  * names of the runtime's functions differ between the two, so that mixing them fails at link time. Who defines GIC_NAME
@@ -81,18 +81,32 @@ const char *gic_status_text(int status);
 
 /* ---- road ------------------------------------------------------------------------------------- */
 
+/* What data follow the head of a road: those of gic_road.h, which lanes look up side by side (gic_road_lanes.h), or
+ * others, whose `height` is called for each lane. */
+typedef enum gic_road_kind {
+    GIC_ROAD_OWN = 0,
+    GIC_ROAD_PLANE,
+    GIC_ROAD_SINE,
+    GIC_ROAD_BUMPS,
+    GIC_ROAD_TABLE,
+    GIC_ROAD_GRID,
+    GIC_ROAD_SUM,
+    GIC_ROAD_PATCHED
+} gic_road_kind;
+
 /* A road z = h(x, y), world frame, metres: one of gic_road.h or your own. `height` sets out[0] = h, out[1] = dh/dx,
  * out[2] = dh/dy. `friction`: at a place, relative to the road that the tires were measured on, above 0; NULL: 1
  * everywhere. `lane` is the instance's lane index. Data of a road follow this head in the user's own structure.
  * For derivatives alone, and NULL where they are not known: `bend` sets the second derivatives h_xx, h_xy, h_yy, 1/m,
  * `friction_slope` those of friction by x and y, 1/m; where they jump, those of the side on which `height` takes the
- * place to be. */
+ * place to be. `kind`: GIC_ROAD_OWN, unless the four functions are those of gic_road.h for that kind. */
 typedef struct gic_road {
     void (*height)(const struct gic_road *road, int32_t lane, gic_real time, gic_real x, gic_real y, gic_real out[3]);
     gic_real (*friction)(const struct gic_road *road, int32_t lane, gic_real time, gic_real x, gic_real y);
     void (*bend)(const struct gic_road *road, int32_t lane, gic_real time, gic_real x, gic_real y, gic_real out[3]);
     void (*friction_slope)(const struct gic_road *road, int32_t lane, gic_real time, gic_real x, gic_real y,
                            gic_real out[2]);
+    gic_road_kind kind;
 } gic_road;
 
 /* What `bend` and `friction_slope` of a road tell or, where they are NULL, central differences of fourth order along x

@@ -15,7 +15,7 @@
 #include <string.h>
 
 /* The version of gic_runtime.h that emitted code is written for: GIC_ABI_VERSION. */
-enum { ABI_VERSION = 13 };
+enum { ABI_VERSION = 14 };
 
 /* ---- texts ------------------------------------------------------------------------------------------------ */
 

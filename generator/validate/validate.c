@@ -200,12 +200,13 @@ static const gic_road *any_road(Pool *pool)
 {
     gic_road_sine *waves = pool_alloc(pool, sizeof *waves);
     gic_road_patched *road = pool_alloc(pool, sizeof *road);
-    *waves = (gic_road_sine){{gic_sine_height, NULL, gic_sine_bend, NULL}, 0.05, 3, 0.3, 0.7};
-    *road = (gic_road_patched){{gic_patched_height, gic_patched_friction, gic_patched_bend, gic_patched_friction_slope},
-                               &waves->head,
-                               0.8,
-                               NULL,
-                               0};
+    *waves = (gic_road_sine){{gic_sine_height, NULL, gic_sine_bend, NULL, GIC_ROAD_SINE}, 0.05, 3, 0.3, 0.7};
+    *road = (gic_road_patched){
+        {gic_patched_height, gic_patched_friction, gic_patched_bend, gic_patched_friction_slope, GIC_ROAD_PATCHED},
+        &waves->head,
+        0.8,
+        NULL,
+        0};
     return &road->head;
 }
 

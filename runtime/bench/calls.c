@@ -50,7 +50,7 @@ static int begin(const void *model, void *self, const double *parameter, const C
     copy(room, parameter, code->parameter_count);
     const int status = code->setup_with(self, room);
     if (road) {
-        *(Adapter *)adapter = (Adapter){{height, road->friction ? friction : NULL, NULL, NULL}, road};
+        *(Adapter *)adapter = (Adapter){{height, road->friction ? friction : NULL, NULL, NULL, GIC_ROAD_OWN}, road};
         ((gic_head *)self)->road = adapter;
     }
     return status;

@@ -54,7 +54,7 @@ bool folder_put(Pool *pool, const char *folder, const char *name, const char *by
 
 bool is_core(const Embedded *file)
 {
-    return !strncmp(file->name, "gic_", 4) && strncmp(file->name, "gic_road", 8) != 0;
+    return !strncmp(file->name, "gic_", 4) && strcmp(file->name, "gic_road.c") != 0;
 }
 
 bool folder_put_core(Pool *pool, const char *folder)

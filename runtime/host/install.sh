@@ -49,7 +49,7 @@ place() {
 
 umask 022
 for program in gicgen gicrun gicsweep gicbench; do put 755 "$BUILD/$program" bin; done
-for header in gic_runtime gic_road gic_gradient gic_batch gic_lanes gic_live; do put 644 runtime/$header.h include; done
+for header in gic_runtime gic_road gic_road_lanes gic_gradient gic_batch gic_lanes gic_live; do put 644 runtime/$header.h include; done
 put 644 "$BUILD/install/libgic_runtime.a" lib
 # the library for programs and for Python, whose package finds it from where it is
 put 644 runtime/host/gic.h include

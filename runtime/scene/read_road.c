@@ -16,6 +16,7 @@ static const gic_road *plane_read(Pool *pool, const Item *item)
 {
     gic_road_plane *road = pool_alloc(pool, sizeof *road);
     road->head.height = gic_plane_height;
+    road->head.kind = GIC_ROAD_PLANE;
     road->head.bend = gic_plane_bend;
     road->z0 = scene_number(item, "height", "height of the road", 0);
     road->sx = scene_number(item, "x", "slope of the road along x", 0);
@@ -39,6 +40,7 @@ static const gic_road *sine_read(Pool *pool, const Item *item)
 {
     gic_road_sine *road = pool_alloc(pool, sizeof *road);
     road->head.height = gic_sine_height;
+    road->head.kind = GIC_ROAD_SINE;
     road->head.bend = gic_sine_bend;
     CHECK_KEYS(item, "a sine road", "type", "friction", "amplitude", "wavelength", "start", "phase_per_y");
     road->amplitude = doc_number(scene_need(item, "amplitude", "a sine road"), "amplitude of the road");
@@ -87,6 +89,7 @@ static const gic_road *bumps_read(Pool *pool, const Item *item)
     gic_road_bumps *road = pool_alloc(pool, sizeof *road);
     gic_bump *bump = NULL;
     road->head.height = gic_bumps_height;
+    road->head.kind = GIC_ROAD_BUMPS;
     road->head.bend = gic_bumps_bend;
     CHECK_KEYS(item, "a road of bumps", "type", "friction", "bumps");
     const Item *list = scene_need(item, "bumps", "a road of bumps");
@@ -131,6 +134,7 @@ static const gic_road *table_read(Pool *pool, const Item *item)
     }
     gic_road_table *road = pool_alloc(pool, sizeof *road);
     road->head.height = gic_table_height;
+    road->head.kind = GIC_ROAD_TABLE;
     road->head.bend = gic_table_bend;
     CHECK_KEYS(item, "a road table", "type", "friction", "x", "height", "left", "right");
     const Item *x = scene_need(item, "x", "a road table");
@@ -220,6 +224,7 @@ static const gic_road *sum_read(Pool *pool, const Item *item)
         *POOL_PUSH(pool, part, road->count) = one;
     }
     road->head.height = gic_sum_height;
+    road->head.kind = GIC_ROAD_SUM;
     road->head.bend = gic_sum_bend;
     road->part = part;
     return &road->head;
@@ -294,6 +299,7 @@ static const gic_road *friction_read(Pool *pool, const Item *item, const gic_roa
     for (int i = 0; list && i < list->count; ++i)
         patch_read(list->value[i], POOL_PUSH(pool, patch, road->count));
     road->head.height = gic_patched_height;
+    road->head.kind = GIC_ROAD_PATCHED;
     road->head.bend = gic_patched_bend;
     road->head.friction = gic_patched_friction;
     road->head.friction_slope = gic_patched_friction_slope;

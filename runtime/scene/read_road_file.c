@@ -92,6 +92,7 @@ const gic_road *table_file_read(Pool *pool, const Item *item)
             diag_fail(csv_place(table, i), "sort the points by x and keep one of equals",
                       "x of a road table must rise: after %g comes %g", x[i - 1], x[i]);
     road->head.height = gic_table_height;
+    road->head.kind = GIC_ROAD_TABLE;
     road->head.bend = gic_table_bend;
     road->x = x;
     road->count = table->rows;
@@ -151,7 +152,7 @@ const gic_road *grid_file_read(Pool *pool, const Item *item)
         diag_fail(whole, "one row x,y,z for each node of a grid", "a height field needs two nodes along x and along y");
     gic_road_grid *road = pool_alloc(pool, sizeof *road);
     double *height = pool_alloc(pool, sizeof *height * (size_t)table->rows);
-    *road = (gic_road_grid){.head = {gic_grid_height, NULL, gic_grid_bend, NULL},
+    *road = (gic_road_grid){.head = {gic_grid_height, NULL, gic_grid_bend, NULL, GIC_ROAD_GRID},
                             .x0 = point[0].x,
                             .y0 = point[0].y,
                             .dx = (point[nx - 1].x - point[0].x) / (nx - 1),

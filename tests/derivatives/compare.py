@@ -57,7 +57,7 @@ def build(folder, dual):
     with open(f"{folder}/code.h", encoding="utf-8") as file:
         header = file.read()
     name = header.split("typedef struct ", 1)[1].split()[0]
-    for part in ("gic_runtime.c", "gic_road.c", "gic_road.h", "gic_lanes.h"): # each includes the header beside it
+    for part in ("gic_runtime.c", "gic_road.c", "gic_road.h", "gic_lanes.h", "gic_road_lanes.h"): # each includes the header beside it
         shutil.copy(f"{runtime}/{part}", folder)
     with open(f"{runtime}/gic_runtime.h", encoding="utf-8") as file:
         text = file.read()

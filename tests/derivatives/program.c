@@ -146,7 +146,7 @@ int main(int argc, char **argv)
     const int states = code->slow_count + code->fast_count, results = states + code->output_count;
     const int kinds[4] = {states, code->input_count, code->parameter_count, code->port_count};
     double *line = (double *)calloc((size_t)results + 1, sizeof *line);
-    gic_road_sine wave = {{gic_sine_height, NULL, gic_sine_bend, NULL}, 0.0, 1.0, 0.0, 0.0};
+    gic_road_sine wave = {{gic_sine_height, NULL, gic_sine_bend, NULL, GIC_ROAD_SINE}, 0.0, 1.0, 0.0, 0.0};
     if (argc == 2) {
         int i;
         if (strcmp(argv[1], "start") == 0) {

@@ -474,7 +474,8 @@ static void attack_callbacks(Trial *t)
                 for (int part = 0; part < 4 && t->code->wheel_count; ++part) {
                     t->what = parts[part];
                     begin(t);
-                    fickle = (Fickle){{fickle_height, fickle_friction, NULL, NULL}, 0, from, part, poison[k], 0};
+                    fickle = (Fickle){
+                        {fickle_height, fickle_friction, NULL, NULL, GIC_ROAD_OWN}, 0, from, part, poison[k], 0};
                     t->self->road = &fickle.road;
                     attack(t, f);
                 }

@@ -228,7 +228,7 @@ for run in run1 run2; do
     "$gicgen" $run/pendulum.veh -o $run/pendulum.c && "$gicgen" --batch 4 $run/pendulum.veh -o $run/pendulum_batch.c
     verdict $? "$run of gicgen"
 done
-cp "$root/runtime/gic_batch.h" .
+cp "$root/runtime/gic_batch.h" "$root/runtime/gic_road_lanes.h" .
 for c in run1 run2; do
     for h in run1 run2; do
         for name in pendulum pendulum_batch; do

@@ -108,7 +108,7 @@ int main(void)
 {
     static const gic_real x[] = {1, 2, 3, GIC_R(3.2)}, height[] = {0, GIC_R(0.1), GIC_R(0.4), 0};
     static gic_real left[4], right[4];
-    gic_road_table road = {{gic_table_height, NULL, gic_table_bend, NULL}, x, height, height, left, right, 4};
+    gic_road_table road = {{gic_table_height, NULL, gic_table_bend, NULL, GIC_ROAD_TABLE}, x, height, height, left, right, 4};
     int bad = gic_road_table_setup(&road) != GIC_OK;
     for (int way = 0; way < 3; ++way)
         for (int taken = 0; taken < 300; taken += 13) {

@@ -22,7 +22,7 @@ modes() { [ -z "$(find "$there" "$@")" ] || { find "$there" "$@" -printf '%m %p\
 check 'folders may be read by all' modes -type d ! -perm 0755
 check 'programs may be run by all' modes -path "$there/bin/*" ! -perm 0755
 check 'other files may be read by all and run by none' modes -type f ! -path "$there/bin/*" ! -perm 0644
-for file in bin/gicgen bin/gicrun bin/gicsweep bin/gicbench include/gic_runtime.h include/gic_road.h include/gic_gradient.h include/gic_batch.h include/gic_lanes.h include/gic_live.h \
+for file in bin/gicgen bin/gicrun bin/gicsweep bin/gicbench include/gic_runtime.h include/gic_road.h include/gic_road_lanes.h include/gic_gradient.h include/gic_batch.h include/gic_lanes.h include/gic_live.h \
     lib/libgic_runtime.a lib/gicgen/mumps.so lib/gicgen/hdf5.so lib/gicgen/bdf.so include/gic.h lib/libgic.a lib/libgic.so lib/libgic.so.1 lib/pkgconfig/gic.pc \
     lib/pkgconfig/gicgen.pc share/gicgen/gic_runtime.c share/gicgen/gic_road.c share/gicgen/gic_gradient.c share/gicgen/models/hmmwv.veh \
     share/gicgen/models/parts/chassis.veh share/gicgen/models/scenes/paper_run.scene \

@@ -7,7 +7,7 @@ gicgen=$(realpath "$1")
 root=$(cd "$(dirname "$0")/../.." && pwd)
 # shellcheck source=tests/lib/checking.sh
 . "$(dirname "$0")/../lib/checking.sh"
-cp "$root"/runtime/gic_runtime.[ch] "$root/runtime/gic_batch.h" "$root/runtime/gic_lanes.h" "$work/"
+cp "$root"/runtime/gic_runtime.[ch] "$root/runtime/gic_batch.h" "$root/runtime/gic_lanes.h" "$root"/runtime/gic_road*.h "$work/"
 cd "$work" || exit 1
 # the smallest model of those whose code for many vehicles has it
 cat >mass.veh <<'XXX'

@@ -7,7 +7,7 @@ root=$(cd "$(dirname "$0")/../.." && pwd)
 # shellcheck source=tests/lib/checking.sh
 . "$(dirname "$0")/../lib/checking.sh"
 
-cp "$root"/runtime/gic_runtime.[ch] "$root/runtime/gic_batch.h" "$root/runtime/gic_lanes.h" "$root/tests/data/embed/lanes.c" "$work/"
+cp "$root"/runtime/gic_runtime.[ch] "$root/runtime/gic_batch.h" "$root/runtime/gic_lanes.h" "$root"/runtime/gic_road*.h "$root/tests/data/embed/lanes.c" "$work/"
 # reactions are refused; what else tuned geometry moves is not
 sed "s|\.\./\.\./\.\./models|$root/models|; /type: reaction/d" "$root/tests/data/tuning/car.veh" >"$work/car.veh"
 cd "$work" || exit 1

@@ -14,7 +14,7 @@ models=$(cd "$here/../models" && pwd)
 cd "$work" || exit 1
 : >out
 : >err
-cp "$here"/../runtime/gic_runtime.[ch] "$here/../runtime/gic_lanes.h" .
+cp "$here"/../runtime/gic_runtime.[ch] "$here/../runtime/gic_lanes.h" "$here"/../runtime/gic_road*.h .
 
 compiles() {
     "$@" -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wdouble-promotion -Werror -ffp-contract=off -I. -c "$code.c" \

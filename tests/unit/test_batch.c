@@ -27,7 +27,8 @@ static void height(const gic_road *road, int32_t lane, gic_real time, gic_real x
     out[1] = out[2] = 0;
 }
 
-static const Bumps whole = {{height, NULL, NULL, NULL}, INFINITY}, broken = {{height, NULL, NULL, NULL}, 6};
+static const Bumps whole = {{height, NULL, NULL, NULL, GIC_ROAD_OWN}, INFINITY},
+                   broken = {{height, NULL, NULL, NULL, GIC_ROAD_OWN}, 6};
 
 static void begin(hmmwv *car, int32_t lane)
 {

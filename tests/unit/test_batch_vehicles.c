@@ -36,7 +36,8 @@ static gic_real friction(const gic_road *road, int32_t lane, gic_real time, gic_
     return y > 0 ? 1 : 1 - 0.1 * lane;
 }
 
-static const Waves whole = {{height, friction, NULL, NULL}, INFINITY}, broken = {{height, NULL, NULL, NULL}, 4};
+static const Waves whole = {{height, friction, NULL, NULL, GIC_ROAD_OWN}, INFINITY},
+                   broken = {{height, NULL, NULL, NULL, GIC_ROAD_OWN}, 4};
 
 /* Pull away, steer, brake until the wheels lock: each lane in its own way. Lane 0 stands still: all numbers are nice.
  */

@@ -15,7 +15,7 @@
 static const gic_model *const models[] = {&hmmwv_model, &quarter_car_model, &pendulum_model, &steered_model};
 enum { MODELS = sizeof models / sizeof *models };
 
-static const gic_road_sine wavy = {{gic_sine_height, NULL, gic_sine_bend, NULL}, 0.02, 6, 0, 0.4};
+static const gic_road_sine wavy = {{gic_sine_height, NULL, gic_sine_bend, NULL, GIC_ROAD_SINE}, 0.02, 6, 0, 0.4};
 
 /* The HMMWV at 5 m/s on the wavy road, turning and swaying. */
 static void start_ride(hmmwv *car)
@@ -339,7 +339,7 @@ static void hole(const gic_road *road, int32_t lane, gic_real time, gic_real x, 
 static void test_road_refused(void **unused)
 {
     (void)unused;
-    static const gic_road nowhere = {hole, NULL, NULL, NULL};
+    static const gic_road nowhere = {hole, NULL, NULL, NULL, GIC_ROAD_OWN};
     Failure *failure = failure_new();
     failure->bad.head.road = &nowhere;
     assert_refused(failure, 0.005, GIC_ERROR_ROAD, NULL);

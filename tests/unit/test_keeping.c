@@ -98,7 +98,7 @@ static void holed(const gic_road *road, int32_t lane, double time, double x, dou
 static void test_failed_step(void **unused)
 {
     (void)unused;
-    static const gic_road road = {holed, NULL, NULL, NULL};
+    static const gic_road road = {holed, NULL, NULL, NULL, GIC_ROAD_OWN};
     static hmmwv_tires car, other;
     gic_self_test test[2];
     assert_int_equal(hmmwv_tires_setup(&car), GIC_OK);

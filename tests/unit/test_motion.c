@@ -39,7 +39,7 @@ static void test_pendulum(void **unused)
  * damping is smooth. The final state into `end`. */
 static void smooth_ride(gic_method method, int steps, double end[HMMWV_STATES])
 {
-    static const gic_road_sine waves = {{gic_sine_height, NULL, gic_sine_bend, NULL}, 0.004, 8, 1, 0.5};
+    static const gic_road_sine waves = {{gic_sine_height, NULL, gic_sine_bend, NULL, GIC_ROAD_SINE}, 0.004, 8, 1, 0.5};
     static const char *const deflection[] = {"tire_f_l.deflection", "tire_f_r.deflection", "tire_r_l.deflection",
                                              "tire_r_r.deflection"};
     Vehicle car = vehicle_new(&hmmwv_model);

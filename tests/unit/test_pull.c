@@ -99,7 +99,7 @@ static void test_pull(void **unused)
         "models/hmmwv_tmeasy.veh",  "models/hmmwv_vehicle.veh", "models/motorcycle.veh",      "models/pendulum.veh",
         "models/quarter_car.veh",   "models/semitrailer.veh",   "models/solid_axle.veh",      "models/trailing_arm.veh",
         "tests/data/tuning/car.veh"};
-    static const gic_road_sine waves = {{gic_sine_height, NULL, gic_sine_bend, NULL}, 0.05, 3, 0.3, 0.7};
+    static const gic_road_sine waves = {{gic_sine_height, NULL, gic_sine_bend, NULL, GIC_ROAD_SINE}, 0.05, 3, 0.3, 0.7};
     for (size_t m = 0; m < sizeof models / sizeof *models; ++m) {
         Pool *pool = pool_new();
         const Model *model = model_read(pool, models[m]);

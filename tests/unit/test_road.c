@@ -75,12 +75,12 @@ static void test_roads(void **unused)
 {
     (void)unused;
     const gic_road_plane plane = {
-        {gic_plane_height, NULL, gic_plane_bend, NULL}, GIC_R(0.25), GIC_R(0.05), GIC_R(-0.03)};
+        {gic_plane_height, NULL, gic_plane_bend, NULL, GIC_ROAD_PLANE}, GIC_R(0.25), GIC_R(0.05), GIC_R(-0.03)};
     const gic_road_sine sine = {
-        {gic_sine_height, NULL, gic_sine_bend, NULL}, GIC_R(0.04), GIC_R(3.0), GIC_R(0.7), GIC_R(0.9)};
+        {gic_sine_height, NULL, gic_sine_bend, NULL, GIC_ROAD_SINE}, GIC_R(0.04), GIC_R(3.0), GIC_R(0.7), GIC_R(0.9)};
     const gic_bump bump[] = {{GIC_R(1.0), GIC_R(2.0), GIC_R(0.1), GIC_R(0.0), GIC_R(50.0)},
                              {GIC_R(2.5), GIC_R(1.5), GIC_R(-0.05), GIC_R(-50.0), GIC_R(50.0)}};
-    gic_road_bumps bumps = {{gic_bumps_height, NULL, gic_bumps_bend, NULL}, bump, 2, 0};
+    gic_road_bumps bumps = {{gic_bumps_height, NULL, gic_bumps_bend, NULL, GIC_ROAD_BUMPS}, bump, 2, 0};
     assert_int_equal(gic_road_bumps_setup(&bumps), GIC_OK);
     check_road(&plane.head, plane_formula);
     check_road(&sine.head, sine_formula);
@@ -99,7 +99,7 @@ static void test_many_bumps(void **unused)
         bump[i] = one;
     }
     bump[8].x = bump[7].x; /* two may begin together */
-    gic_road_bumps bumps = {{gic_bumps_height, NULL, gic_bumps_bend, NULL}, bump, MANY, 0};
+    gic_road_bumps bumps = {{gic_bumps_height, NULL, gic_bumps_bend, NULL, GIC_ROAD_BUMPS}, bump, MANY, 0};
     assert_int_equal(gic_road_bumps_setup(&bumps), GIC_OK);
     check_road(&bumps.head, bumps_formula);
 
@@ -125,7 +125,7 @@ static void test_table(void **unused)
     const gic_real right[COUNT] = {GIC_R(-1.0), GIC_R(0.0), GIC_R(0.5), GIC_R(2.0), GIC_R(3.0), GIC_R(5.0), GIC_R(6.0)};
     gic_real slope_left[COUNT], slope_right[COUNT], out[3], beside[3];
     gic_road_table road = {
-        {gic_table_height, NULL, gic_table_bend, NULL}, x, left, right, slope_left, slope_right, COUNT};
+        {gic_table_height, NULL, gic_table_bend, NULL, GIC_ROAD_TABLE}, x, left, right, slope_left, slope_right, COUNT};
     assert_int_equal(gic_road_table_setup(&road), GIC_OK);
 
     for (int side = 0; side < 2; ++side) {
@@ -187,8 +187,14 @@ static const gic_real field[NX * NY] = {GIC_R(0.0),  GIC_R(0.1),  GIC_R(-0.2), G
                                         GIC_R(0.2),  GIC_R(0.6),  GIC_R(-0.4), GIC_R(0.1), GIC_R(0.3),  GIC_R(0.05),
                                         GIC_R(0.0),  GIC_R(-0.1), GIC_R(0.7),  GIC_R(0.2), GIC_R(-0.5), GIC_R(0.45)};
 
-static const gic_road_grid grid = {
-    {gic_grid_height, NULL, gic_grid_bend, NULL}, GIC_R(1.0), GIC_R(-1.0), GIC_R(0.5), GIC_R(0.25), NX, NY, field};
+static const gic_road_grid grid = {{gic_grid_height, NULL, gic_grid_bend, NULL, GIC_ROAD_GRID},
+                                   GIC_R(1.0),
+                                   GIC_R(-1.0),
+                                   GIC_R(0.5),
+                                   GIC_R(0.25),
+                                   NX,
+                                   NY,
+                                   field};
 
 /* Catmull and Rom's cubic by its basis matrix, in cells of width 1; level at both ends by mirrored neighbours. */
 static long double spline(const long double *h, int count, long double at)
@@ -232,7 +238,8 @@ static void test_grid(void **unused)
         }
     /* two nodes are a smooth step */
     const gic_real step[] = {GIC_R(0.0), GIC_R(1.0), GIC_R(0.0), GIC_R(1.0)};
-    const gic_road_grid smallest = {{gic_grid_height, NULL, gic_grid_bend, NULL}, 0, 0, 1, 1, 2, 2, step};
+    const gic_road_grid smallest = {
+        {gic_grid_height, NULL, gic_grid_bend, NULL, GIC_ROAD_GRID}, 0, 0, 1, 1, 2, 2, step};
     smallest.head.height(&smallest.head, 0, 0, GIC_R(0.25), GIC_R(77.0), out);
     assert_true(fabs((double)out[0] - 0.15625) < EPSILON && fabs((double)out[1] - 1.125) < 4 * EPSILON);
 
@@ -265,8 +272,8 @@ static void test_nowhere(void **unused)
     }
     gic_real at[] = {GIC_R(0.0), GIC_R(1.0), GIC_R(2.0)}, left[3], right[3];
     gic_bump bump[] = {{GIC_R(0.0), GIC_R(1.0), GIC_R(0.1), GIC_R(-1.0), GIC_R(1.0)}};
-    gic_road_table table = {{gic_table_height, NULL, gic_table_bend, NULL}, at, at, at, left, right, 3};
-    gic_road_bumps bumps = {{gic_bumps_height, NULL, gic_bumps_bend, NULL}, bump, 1, 0};
+    gic_road_table table = {{gic_table_height, NULL, gic_table_bend, NULL, GIC_ROAD_TABLE}, at, at, at, left, right, 3};
+    gic_road_bumps bumps = {{gic_bumps_height, NULL, gic_bumps_bend, NULL, GIC_ROAD_BUMPS}, bump, 1, 0};
     assert_int_equal(gic_road_table_setup(&table), GIC_OK);
     assert_int_equal(gic_road_bumps_setup(&bumps), GIC_OK);
     for (int i = 0; i < 3; ++i) {
@@ -509,9 +516,9 @@ static void test_sum(void **unused)
 {
     (void)unused;
     const gic_road_plane plane = {
-        {gic_plane_height, NULL, gic_plane_bend, NULL}, GIC_R(0.25), GIC_R(0.05), GIC_R(-0.03)};
+        {gic_plane_height, NULL, gic_plane_bend, NULL, GIC_ROAD_PLANE}, GIC_R(0.25), GIC_R(0.05), GIC_R(-0.03)};
     const gic_road *const part[] = {&plane.head, &grid.head};
-    const gic_road_sum sum = {{gic_sum_height, NULL, gic_sum_bend, NULL}, part, 2};
+    const gic_road_sum sum = {{gic_sum_height, NULL, gic_sum_bend, NULL, GIC_ROAD_SUM}, part, 2};
     gic_real out[3], a[3], b[3];
     for (double x = -1; x < 5; x += 0.37) {
         sum.head.height(&sum.head, 0, 0, (gic_real)x, GIC_R(0.2), out);
@@ -526,14 +533,15 @@ static void test_friction(void **unused)
 {
     (void)unused;
     const gic_road_plane plane = {
-        {gic_plane_height, NULL, gic_plane_bend, NULL}, GIC_R(0.25), GIC_R(0.05), GIC_R(-0.03)};
+        {gic_plane_height, NULL, gic_plane_bend, NULL, GIC_ROAD_PLANE}, GIC_R(0.25), GIC_R(0.05), GIC_R(-0.03)};
     const gic_friction_patch patch[] = {{GIC_R(2.0), GIC_R(6.0), GIC_R(-1.0), GIC_R(1.0), GIC_R(0.25), GIC_R(1.0)},
                                         {GIC_R(4.0), GIC_R(8.0), GIC_R(0.0), GIC_R(3.0), GIC_R(0.5), GIC_R(0.5)}};
-    gic_road_patched road = {{gic_patched_height, gic_patched_friction, gic_patched_bend, gic_patched_friction_slope},
-                             &plane.head,
-                             GIC_R(0.75),
-                             patch,
-                             2};
+    gic_road_patched road = {
+        {gic_patched_height, gic_patched_friction, gic_patched_bend, gic_patched_friction_slope, GIC_ROAD_PATCHED},
+        &plane.head,
+        GIC_R(0.75),
+        patch,
+        2};
     const struct {
         double x, y, value;
     } expected[] = {{-9, 0, 0.75},

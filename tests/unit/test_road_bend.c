@@ -44,15 +44,21 @@ static void check_places(const gic_road *road)
 
 static const double table_x[] = {0, 1, 2, 4, 5}, table_left[] = {0, 1, 1, 0, 0.5}, table_right[] = {0, 0.5, 1, 2, 2.5};
 static double slope_left[5], slope_right[5];
-static gic_road_table table = {
-    {gic_table_height, NULL, gic_table_bend, NULL}, table_x, table_left, table_right, slope_left, slope_right, 5};
+static gic_road_table table = {{gic_table_height, NULL, gic_table_bend, NULL, GIC_ROAD_TABLE},
+                               table_x,
+                               table_left,
+                               table_right,
+                               slope_left,
+                               slope_right,
+                               5};
 
 static const double field[] = {0, 0, 1, 0, 0, 1, 0, 2, 0.5, 0, 0, 1, 0, 0, 0, 2, 1, 0, 1, 0};
-static const gic_road_grid grid = {{gic_grid_height, NULL, gic_grid_bend, NULL}, 0, -1, 1, 0.5, 5, 4, field};
+static const gic_road_grid grid = {
+    {gic_grid_height, NULL, gic_grid_bend, NULL, GIC_ROAD_GRID}, 0, -1, 1, 0.5, 5, 4, field};
 static const gic_bump bump[] = {{0, 2, 0.1, 0, 9}, {1, 2, 0.2, -9, 9}, {4, 1, 0.1, -9, 0}};
-static gic_road_bumps bumps = {{gic_bumps_height, NULL, gic_bumps_bend, NULL}, bump, 3, 0};
-static const gic_road_sine sine = {{gic_sine_height, NULL, gic_sine_bend, NULL}, 0.1, 2, 0, 1};
-static const gic_road_plane plane = {{gic_plane_height, NULL, gic_plane_bend, NULL}, 1, 0.5, -0.5};
+static gic_road_bumps bumps = {{gic_bumps_height, NULL, gic_bumps_bend, NULL, GIC_ROAD_BUMPS}, bump, 3, 0};
+static const gic_road_sine sine = {{gic_sine_height, NULL, gic_sine_bend, NULL, GIC_ROAD_SINE}, 0.1, 2, 0, 1};
+static const gic_road_plane plane = {{gic_plane_height, NULL, gic_plane_bend, NULL, GIC_ROAD_PLANE}, 1, 0.5, -0.5};
 
 static int set_up(void **state)
 {
@@ -64,9 +70,9 @@ static void test_everywhere(void **state)
 {
     (void)state;
     const gic_road *const part[] = {&plane.head, &sine.head, &table.head, &bumps.head, &grid.head};
-    const gic_road_sum sum = {{gic_sum_height, NULL, gic_sum_bend, NULL}, part, 5};
+    const gic_road_sum sum = {{gic_sum_height, NULL, gic_sum_bend, NULL, GIC_ROAD_SUM}, part, 5};
     const gic_road_patched patched = {
-        {gic_patched_height, gic_patched_friction, gic_patched_bend, gic_patched_friction_slope},
+        {gic_patched_height, gic_patched_friction, gic_patched_bend, gic_patched_friction_slope, GIC_ROAD_PATCHED},
         &sum.head,
         1,
         NULL,
@@ -111,11 +117,12 @@ static void test_closed(void **state)
      * quarter of that */
     static const double x[] = {0, 1, 2, 4, 5}, h[] = {0, 1, 1, 0, 0};
     double slope[2][5];
-    gic_road_table steps = {{gic_table_height, NULL, gic_table_bend, NULL}, x, h, h, slope[0], slope[1], 5};
+    gic_road_table steps = {
+        {gic_table_height, NULL, gic_table_bend, NULL, GIC_ROAD_TABLE}, x, h, h, slope[0], slope[1], 5};
     assert_int_equal(gic_road_table_setup(&steps), GIC_OK);
     /* where one bump of 1 m and 0.1 m ends and the next begins: 2 pi^2 0.1 on both sides */
     static const gic_bump pair[] = {{-1, 1, 0.1, -9, 9}, {0, 1, 0.1, -9, 9}};
-    gic_road_bumps chain = {{gic_bumps_height, NULL, gic_bumps_bend, NULL}, pair, 2, 0};
+    gic_road_bumps chain = {{gic_bumps_height, NULL, gic_bumps_bend, NULL, GIC_ROAD_BUMPS}, pair, 2, 0};
     assert_int_equal(gic_road_bumps_setup(&chain), GIC_OK);
     gic_road_bend(&chain.head, 0, 0, 0, 0.3, out);
     assert_true(fabs(out[0] - 0.2 * pi * pi) < 1e-14);
@@ -149,11 +156,11 @@ static void test_others(void **state)
 {
     (void)state;
     double out[3];
-    const gic_road other = {other_height, other_friction, NULL, NULL};
+    const gic_road other = {other_height, other_friction, NULL, NULL, GIC_ROAD_OWN};
     const gic_road *const part[] = {&plane.head, &other};
-    const gic_road_sum sum = {{gic_sum_height, NULL, gic_sum_bend, NULL}, part, 2};
+    const gic_road_sum sum = {{gic_sum_height, NULL, gic_sum_bend, NULL, GIC_ROAD_SUM}, part, 2};
     const gic_road_patched patched = {
-        {gic_patched_height, gic_patched_friction, gic_patched_bend, gic_patched_friction_slope},
+        {gic_patched_height, gic_patched_friction, gic_patched_bend, gic_patched_friction_slope, GIC_ROAD_PATCHED},
         &sum.head,
         1,
         NULL,
@@ -180,7 +187,11 @@ static void test_friction(void **state)
     (void)state;
     static const gic_friction_patch patch[] = {{0, 2, 0, 2, 0.5, 1}, {1, 3, -1, 1, 0.2, 0.5}};
     const gic_road_patched road = {
-        {gic_patched_height, gic_patched_friction, gic_patched_bend, gic_patched_friction_slope}, NULL, 1, patch, 2};
+        {gic_patched_height, gic_patched_friction, gic_patched_bend, gic_patched_friction_slope, GIC_ROAD_PATCHED},
+        NULL,
+        1,
+        patch,
+        2};
     double slope[2];
     const double reach = 1e-5;
     for (int i = -8; i < 33; ++i)

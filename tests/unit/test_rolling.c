@@ -12,7 +12,7 @@
 
 enum { SLOW = HMMWV_TIRES_SLOW, FAST = HMMWV_TIRES_STATES - HMMWV_TIRES_SLOW, WHEELS = HMMWV_TIRES_ROLLING };
 
-static const gic_road_sine wavy = {{gic_sine_height, NULL, gic_sine_bend, NULL}, 0.02, 6, 0, 0.4};
+static const gic_road_sine wavy = {{gic_sine_height, NULL, gic_sine_bend, NULL, GIC_ROAD_SINE}, 0.02, 6, 0, 0.4};
 
 /* Rolling at 12 m/s on a wavy road, turning; steered, driven and braked a little. */
 static void start(hmmwv_tires *car)
@@ -267,7 +267,7 @@ static void test_friction(void **unused)
 {
     (void)unused;
     static hmmwv_tires car;
-    gic_road_plane road = {{gic_plane_height, friction_of_test, gic_plane_bend, NULL}, 0, 0, 0};
+    gic_road_plane road = {{gic_plane_height, friction_of_test, gic_plane_bend, NULL, GIC_ROAD_PLANE}, 0, 0, 0};
     double force[2], rate[HMMWV_TIRES_STATES];
     for (int i = 0; i < 2; ++i) {
         slippery = i ? 0.5 : 1;

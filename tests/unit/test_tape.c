@@ -32,7 +32,7 @@ static void saddle(const gic_road *road, int32_t lane, double time, double x, do
     out[2] = x;
 }
 
-static const gic_road saddle_road = {saddle, NULL, NULL, NULL};
+static const gic_road saddle_road = {saddle, NULL, NULL, NULL, GIC_ROAD_OWN};
 
 /* Memory that tapes work on. */
 typedef struct Memory {

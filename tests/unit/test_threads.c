@@ -22,7 +22,7 @@ static void height(const gic_road *road, int32_t lane, gic_real time, gic_real x
     out[1] = out[2] = 0;
 }
 
-static const gic_road road = {height, NULL, NULL, NULL};
+static const gic_road road = {height, NULL, NULL, NULL, GIC_ROAD_OWN};
 
 static void *drive(void *vehicle)
 {

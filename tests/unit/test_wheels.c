@@ -135,8 +135,8 @@ static void test_slope(void **unused)
     for (int m = 0; m < MODELS; ++m) {
         const Corner corner = corner_of(models[m]);
         const double angle = 0.3, c = cos(angle), s = sin(angle), up[9] = {c, 0, -s, 0, 1, 0, s, 0, c};
-        const Slope flat = {{plane_height, low_friction, NULL, NULL}, 0},
-                    hill = {{plane_height, low_friction, NULL, NULL}, s / c};
+        const Slope flat = {{plane_height, low_friction, NULL, NULL, GIC_ROAD_OWN}, 0},
+                    hill = {{plane_height, low_friction, NULL, NULL, GIC_ROAD_OWN}, s / c};
         Random random = {.state = 3};
         for (int n = 0; n < 50; ++n) {
             const WheelMotion level = random_motion(corner.tire, &random);

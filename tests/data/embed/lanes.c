@@ -32,7 +32,7 @@ static void bank(const gic_road *road, int32_t lane, gic_real time, gic_real x, 
     out[2] = GIC_R(0.01);
 }
 
-static const gic_road banked = {bank, NULL, NULL, NULL};
+static const gic_road banked = {bank, NULL, NULL, NULL, GIC_ROAD_OWN};
 
 /* Another road, motion to the side, an input. */
 static void break_away(const gic_model *model, gic_head *car, int i)

@@ -38,7 +38,7 @@ int main(void)
     if (!car)
         return 1;
 #ifdef ROAD
-    static const gic_road road = {waves, NULL, NULL, NULL};
+    static const gic_road road = {waves, NULL, NULL, NULL, GIC_ROAD_OWN};
     ((gic_head *)car)->road = &road;
 #endif
     gic_real *const state = (gic_real *)(void *)((char *)car + MODEL.state_offset);

@@ -21,7 +21,7 @@ static void some_height(const gic_road *road, int32_t lane, gic_real time, gic_r
     out[0] = out[1] = out[2] = 0;
 }
 
-static const gic_road other_road = {some_height, NULL, NULL, NULL};
+static const gic_road other_road = {some_height, NULL, NULL, NULL, GIC_ROAD_OWN};
 
 /* All calls end with the status, named so, and leave state, outputs and time as they were; then it goes on. */
 static void refuses(hmmwv_vehicle *vehicle, const hmmwv_vehicle *good, const char *named)

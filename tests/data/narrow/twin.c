@@ -16,7 +16,7 @@ static void stepped(const gic_road *road, int32_t lane, gic_real time, gic_real 
 
 int main(void)
 {
-    static const gic_road road = {stepped, NULL, NULL, NULL};
+    static const gic_road road = {stepped, NULL, NULL, NULL, GIC_ROAD_OWN};
     static twin one;
     static any all;
     gic_real rate[TWIN_STATES], right[ANY_STATES];

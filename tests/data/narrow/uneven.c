@@ -34,8 +34,9 @@ static void tilted(const gic_road *road, int32_t lane, gic_real time, gic_real x
     out[0] += GIC_R(0.01) * y, out[2] = GIC_R(0.01);
 }
 
-static const gic_road even_road = {even, NULL, NULL, NULL}, stepped_road = {stepped, NULL, NULL, NULL},
-                      tilted_road = {tilted, NULL, NULL, NULL};
+static const gic_road even_road = {even, NULL, NULL, NULL, GIC_ROAD_OWN},
+                      stepped_road = {stepped, NULL, NULL, NULL, GIC_ROAD_OWN},
+                      tilted_road = {tilted, NULL, NULL, NULL, GIC_ROAD_OWN};
 
 static void refuses(hmmwv *vehicle, const hmmwv *good, const char *named)
 {

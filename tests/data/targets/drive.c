@@ -18,7 +18,7 @@ int main(void)
     static const gic_friction_patch ice = {GIC_R(4.0), GIC_R(8.0), GIC_R(-1.0), GIC_R(1.0), GIC_R(0.1), GIC_R(2.0)};
     static gic_road_grid rough;
     static gic_road_patched road = {
-        {gic_patched_height, gic_patched_friction, gic_patched_bend, gic_patched_friction_slope},
+        {gic_patched_height, gic_patched_friction, gic_patched_bend, gic_patched_friction_slope, GIC_ROAD_PATCHED},
         &rough.head,
         GIC_R(0.9),
         &ice,
