@@ -2275,12 +2275,13 @@ static gic_real instant(const gic_controller *controller, gic_real late, gic_rea
     return controller->offset + late + number * controller->period;
 }
 
-/* True if the next instant has come. A number that does not belong to the time, since a program has moved it, becomes
- * that of the first instant that is not before the time. */
+/* True if the next instant has come. A number that does not belong to the time, since a program has moved it or begins
+ * later than at 0, becomes that of the first instant that is not before the time. No step goes over an instant, so one
+ * that is past was never due; only the first one may be further away than a period. */
 static int has_come(const gic_controller *controller, gic_real late, gic_real time, gic_real *number)
 {
     const gic_real same = same_time(controller, time), wait = instant(controller, late, *number) - time;
-    if (wait < GIC_R(-0.5) * controller->period || (wait > GIC_R(1.5) * controller->period && *number > GIC_R(0.0))) {
+    if (wait < -same || (wait > controller->period + same && *number > GIC_R(0.0))) {
         const gic_real first = MATH(ceil)((time - same - controller->offset - late) / controller->period);
         *number = first > GIC_R(0.0) ? first : GIC_R(0.0);
     }

@@ -248,19 +248,26 @@ static void write_work(void *context, Text *out, int indent)
              room(columns->wheels->parts), g->upper);
 }
 
-/* Columns of both kinds have the same room. */
+int column_lanes(Generation *g)
+{
+    const bool before = g->weighing;
+    const RateColumns *weighed = g->style->implicit ? weighed_columns(g) : NULL;
+    g->weighing = false;
+    const RateColumns *whole = has_tangents(g) ? columns_of(g) : NULL;
+    g->weighing = before;
+    const int lanes = whole && weighed ? (whole->lanes > weighed->lanes ? whole->lanes : weighed->lanes)
+                                       : (whole ? whole : weighed)->lanes;
+    return room((lanes + 7) / 8 * 8);
+}
+
 static void write_lanes(void *context, Text *out, int indent)
 {
     Generation *g = context;
-    const RateColumns *weighed = g->style->implicit ? weighed_columns(g) : NULL;
-    const RateColumns *whole = has_tangents(g) ? columns_of(g) : NULL;
-    const int lanes = whole && weighed ? (whole->lanes > weighed->lanes ? whole->lanes : weighed->lanes)
-                                       : (whole ? whole : weighed)->lanes;
     line(out, indent,
          "enum { %s_COLUMN_LANES = %d }; /* columns that change accelerations or fast rates, and some more, for "
          "vectors of them "
          "*/",
-         g->upper, room((lanes + 7) / 8 * 8));
+         g->upper, column_lanes(g));
 }
 
 static void write_weighed_lanes(void *context, Text *out, int indent)

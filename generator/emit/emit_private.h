@@ -200,6 +200,8 @@ void write_tangent_header(void *context, Text *out, int indent);
  */
 extern const Insertions columns_points, columns_class_points;
 const struct RateColumns *columns_of(Generation *g);
+/* Length of rows of columns that are solved at once: one for columns of both kinds, whole vectors. */
+int column_lanes(Generation *g);
 /* "columns", or "forces" while weighed ones are written. */
 const char *columns_name(const Generation *g);
 void write_jacobian_columns(void *context, Text *out, int indent);

@@ -44,11 +44,6 @@ enum { SIDE_BY_SIDE = 8, FASTER = 4 };
 /* Pieces that are as good as the whole: about so many, none with less work. */
 enum { PIECES = 64, LEAST_WORK = 60 };
 
-static int padded_lanes(const RateColumns *columns)
-{
-    return room((columns->lanes + 7) / 8 * 8);
-}
-
 static void add(Generation *g, struct Spread *spread, Piece piece)
 {
     *POOL_PUSH(g->pool, spread->piece, spread->pieces) = piece;
@@ -129,7 +124,7 @@ static const struct Spread *spread_of(Generation *g)
     }
     if (columns->wheels)
         add_wheels(g, spread, columns, most);
-    add(g, spread, (Piece){.kind = PIECE_CLEAR, .work = room(g->plan->unknowns) * padded_lanes(columns) / CLEARED});
+    add(g, spread, (Piece){.kind = PIECE_CLEAR, .work = room(g->plan->unknowns) * column_lanes(g) / CLEARED});
     add_block(g, spread, PIECE_WHOLE, placed_block(g, &columns->residuals), most);
     const int solved = (block_work(&columns->solution) + 1) * SIDE_BY_SIDE / FASTER;
     if (columns->solution.stores)
@@ -165,7 +160,7 @@ static int work_space(Generation *g, Text *out, int indent)
     const RateColumns *columns = weighed_columns(g);
     const WheelColumns *w = columns->wheels;
     const Wheels *wheels = g->formulation->wheels;
-    const int lanes = padded_lanes(columns);
+    const int lanes = column_lanes(g);
     return array(out, indent, "column", columns->size, 0) + array(out, indent, "factor", spread->kept, 0) +
            array(out, indent, "right", g->plan->unknowns, lanes) + array(out, indent, "local", w ? w->locals : 0, 0) +
            array(out, indent, "part", w ? w->parts : 0, lanes) + array(out, indent, "link", w ? wheels->links : 0, 0) +

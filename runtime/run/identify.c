@@ -39,6 +39,9 @@ typedef struct Fit {
     int time, *column, *output;
     int64_t *step; /* [rows] of the run at which a row was measured */
     double *noise; /* [columns] */
+    bool *counts;  /* [columns] what is looked for changes it, where the fit begins */
+    double *taken; /* [columns] degrees of freedom that the variables took of its measurements */
+    double *share; /* [columns][variables] of a variable's variance that is due to its noise */
     double *unit;  /* [variables] */
     double *value; /* [outputs], and their derivatives [outputs][variables] */
     double *slope;
@@ -156,14 +159,21 @@ static int run_with(Fit *fit, const gsl_vector *x)
     return fit->status = run_through(fit);
 }
 
-/* A run that is not possible is far from all that was measured. */
+/* What is left of a measurement, in units of its noise. */
+static double weighed(const Fit *fit, size_t measurement)
+{
+    return fit->rest[measurement] / fit->noise[measurement % (size_t)fit->columns];
+}
+
+/* A run that is not possible is far from all that was measured. Columns that nothing moves are left out: they would
+ * hide by how much a step brings the others nearer. */
 static int residuals(const gsl_vector *x, void *context, gsl_vector *f)
 {
     const double far = 1e30;
     Fit *fit = context;
     const int status = run_with(fit, x);
     for (size_t i = 0; i < f->size; ++i)
-        gsl_vector_set(f, i, status == GIC_OK ? fit->rest[i] / fit->noise[i % (size_t)fit->columns] : far);
+        gsl_vector_set(f, i, status != GIC_OK ? far : fit->counts[i % (size_t)fit->columns] ? weighed(fit, i) : 0);
     return GSL_SUCCESS;
 }
 
@@ -179,17 +189,72 @@ static int derivatives(const gsl_vector *x, void *context, gsl_matrix *J)
     return GSL_SUCCESS;
 }
 
+/* Which columns follow what is looked for, by the derivatives of the last run. */
+static void find_counting(Fit *fit)
+{
+    const int n = fit->variables;
+    for (int c = 0; c < fit->columns; ++c) {
+        fit->counts[c] = false;
+        for (int r = 0; r < fit->table->rows && !fit->counts[c]; ++r)
+            for (int k = 0; k < n; ++k)
+                fit->counts[c] = fit->counts[c] || fit->jacobian[(r * fit->columns + c) * n + k] != 0;
+    }
+}
+
+static int counting(const Fit *fit)
+{
+    int columns = 0;
+    for (int c = 0; c < fit->columns; ++c)
+        columns += fit->counts[c];
+    return columns;
+}
+
+/* How much of each column the variables took, and what its noise has to do with each of them: by the derivatives J and
+ * the covariance C = (J^T J)^-1, both in units of noise, measurement i takes J_i C J_i^T degrees of freedom, and adds
+ * (C J_i^T)_k^2 to the variance of variable k. */
+static void share_out(Fit *fit, const gsl_matrix *J, const gsl_matrix *C)
+{
+    const size_t n = J->size2, columns = (size_t)fit->columns;
+    memset(fit->taken, 0, columns * sizeof(double));
+    memset(fit->share, 0, columns * n * sizeof(double));
+    for (size_t i = 0; i < J->size1; ++i)
+        for (size_t k = 0; k < n; ++k) {
+            double change = 0;
+            for (size_t j = 0; j < n; ++j)
+                change += gsl_matrix_get(C, k, j) * gsl_matrix_get(J, i, j);
+            fit->taken[i % columns] += gsl_matrix_get(J, i, k) * change;
+            fit->share[i % columns * n + k] += change * change / gsl_matrix_get(C, k, k);
+        }
+}
+
+/* Degrees of freedom by which the noise of a column is known. Where the variables take all of them but rounding, hardly
+ * any: an interval that is wide, not one that is no number. */
+static double column_freedom(const Fit *fit, int column)
+{
+    return fmax(fit->table->rows - fit->taken[column], 0.1);
+}
+
+/* Degrees of freedom of the deviation of a variable, after Welch and Satterthwaite: its variance is a sum of columns'
+ * variances, each known by its own. With one column, measurements less variables. */
+static double freedom(const Fit *fit, size_t variable)
+{
+    double sum = 0;
+    for (int c = 0; c < fit->columns; ++c)
+        sum += pow(fit->share[(size_t)c * (size_t)fit->variables + variable], 2) / column_freedom(fit, c);
+    return 1 / sum;
+}
+
 /* The noise of each output, of what is left, less what the variables took of it. */
 static void find_noise(Fit *fit)
 {
-    const double rows = fit->table->rows, all = rows * fit->columns, rounding = 1e-13;
+    const double rounding = 1e-13;
     for (int c = 0; c < fit->columns; ++c) {
         double sum = 0, most = 0;
         for (int r = 0; r < fit->table->rows; ++r) {
             sum += pow(fit->rest[r * fit->columns + c], 2);
             most = fmax(most, fabs(measured(fit, r, fit->column[c])));
         }
-        fit->noise[c] = fmax(sqrt(sum / (rows * (1 - fit->variables / all))), rounding * most);
+        fit->noise[c] = fmax(sqrt(sum / column_freedom(fit, c)), rounding * most);
         if (fit->noise[c] == 0)
             fit->noise[c] = rounding;
     }
@@ -244,7 +309,7 @@ static bool is_there(const gsl_multifit_nlinear_workspace *work, const gsl_matri
 }
 
 /* How a fit ends. */
-typedef enum End { FOUND, NO_RUN, UNTOLD, LOST } End;
+typedef enum End { FOUND, NO_RUN, UNTOLD, FEW, LOST } End;
 
 /* From the present numbers x; *x and the covariance, in units. *untold: a variable that measurements do not tell. */
 static End fit_once(Fit *fit, gsl_vector *x, gsl_matrix *covariance, size_t *untold)
@@ -262,6 +327,7 @@ static End fit_once(Fit *fit, gsl_vector *x, gsl_matrix *covariance, size_t *unt
         gsl_vector_memcpy(x, gsl_multifit_nlinear_position(work));
         told = is_told(gsl_multifit_nlinear_jac(work), untold);
         gsl_multifit_nlinear_covar(gsl_multifit_nlinear_jac(work), 0, covariance);
+        share_out(fit, gsl_multifit_nlinear_jac(work), covariance);
         there = is_there(work, covariance);
     }
     gsl_multifit_nlinear_free(work);
@@ -293,6 +359,9 @@ static Fit open(Pool *pool, const Model *from, const Scene *scene, const Request
     const size_t outputs = (size_t)model->output_components + 1, n = (size_t)fit.variables;
     const size_t cells = (size_t)(fit.table->rows * fit.columns);
     fit.noise = pool_alloc(pool, ((size_t)fit.columns + 1) * sizeof(double));
+    fit.counts = pool_alloc(pool, ((size_t)fit.columns + 1) * sizeof(bool));
+    fit.taken = pool_alloc(pool, ((size_t)fit.columns + 1) * sizeof(double));
+    fit.share = pool_alloc(pool, ((size_t)fit.columns + 1) * (n + 1) * sizeof(double));
     fit.unit = pool_alloc(pool, (n + 1) * sizeof(double));
     fit.value = pool_alloc(pool, outputs * sizeof(double));
     fit.slope = pool_alloc(pool, outputs * (n + 1) * sizeof(double));
@@ -395,7 +464,8 @@ static void print(const Fit *fit, const Found *found)
                    fit->variable[k].unit);
     text_print(out, "\n%-32s  %14s\n", "output", "noise left");
     for (int c = 0; c < fit->columns; ++c)
-        text_print(out, "%-32s  %14.6g\n", fit->table->name[fit->column[c]], fit->noise[c]);
+        text_print(out, "%-32s  %14.6g%s\n", fit->table->name[fit->column[c]], fit->noise[c],
+                   fit->counts[c] ? "" : "  nothing that is looked for changes it");
     diag_text(text.s);
 }
 
@@ -405,9 +475,14 @@ static End fit_all(Fit *fit, gsl_vector *x, gsl_matrix *covariance, size_t *unto
     End end = FOUND;
     for (size_t k = 0; k < x->size; ++k)
         gsl_vector_set(x, k, fit->variable[k].value / fit->unit[k]);
+    if (run_with(fit, x) != GIC_OK)
+        return NO_RUN;
     for (int round = 0; round < ROUNDS && end == FOUND; ++round) {
         if (round > 0)
             find_noise(fit);
+        find_counting(fit);
+        if (counting(fit) > 0 && counting(fit) * fit->table->rows <= fit->variables)
+            return FEW;
         end = fit_once(fit, x, covariance, untold);
         if (end == FOUND && run_with(fit, x) != GIC_OK) /* what is left there */
             end = NO_RUN;
@@ -430,6 +505,10 @@ static void check_end(const Fit *fit, End end, size_t untold)
         diag_fail((Place){fit->table->source, 1, 1}, "leave it out, or measure something that it changes by itself",
                   "these measurements do not tell %s: a combination of what is looked for changes nothing",
                   fit->variable[untold].name);
+    if (end == FEW)
+        diag_fail((Place){fit->table->source, 1, 1}, "measure more, or look for less",
+                  "%d measurements that change with what is looked for do not tell %d numbers and their noise",
+                  counting(fit) * fit->table->rows, fit->variables);
     if (end == LOST)
         diag_fail((Place){fit->scene->source, 0, 0}, "start nearer: other values in the scene",
                   "the least sum of squares was not found: after %d steps at most it still moves", MOST_STEPS);
@@ -469,9 +548,8 @@ void identify_report(Pool *pool, const Model *model, const Scene *scene, const R
     gsl_matrix *covariance = gsl_matrix_alloc(n, n);
     Found *found = pool_alloc(pool, (n + 1) * sizeof *found);
     const End end = fit_all(&fit, x, covariance, &untold);
-    const double freedom = fit.table->rows * fit.columns - fit.variables;
-    const double reach = gsl_cdf_tdist_Pinv((1 + likelihood) / 2, freedom);
     for (size_t k = 0; k < n && end == FOUND; ++k) {
+        const double reach = gsl_cdf_tdist_Pinv((1 + likelihood) / 2, freedom(&fit, k));
         const double value = gsl_vector_get(x, k) * fit.unit[k];
         const double deviation = sqrt(gsl_matrix_get(covariance, k, k)) * fit.unit[k];
         found[k] = (Found){value, deviation, value - reach * deviation, value + reach * deviation};

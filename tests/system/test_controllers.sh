@@ -318,6 +318,64 @@ for more in '' --derivatives --implicit; do # one body, no joints
     verdict $? "a body alone compiles without warnings $more: $(head -n 1 said)"
 done
 
+# a program begins at other times than 0, or moves the time: the next sample is the first one that is not before it
+cat >moved.veh <<'END'
+gicgen: 1
+model: moved
+base: car
+bodies: {car: {mass: 1, com: [0, 0, 0], inertia: [1, 1, 1]}}
+controllers:
+  c: {period: 0.1, rules: {n: {value: "c.n + 1"}}}
+  d: {period: 0.07, offset: 0.03, rules: {n: {value: "d.n + 1"}}}
+END
+cat >moved_main.c <<'END'
+#include "moved.h"
+#include <math.h>
+#include <stdio.h>
+static moved car;
+static int failed;
+/* Samples in [from, to), in thousandths, where all of these are whole. */
+static int due(int period, int offset, int from, int to)
+{
+    int count = 0;
+    for (int at = offset; at < to; at += period)
+        count += at >= from;
+    return count;
+}
+/* From a time to another in steps of a thousandth: as many samples as are due. What the next step begins with, it samples. */
+static void go(int from, int to)
+{
+    const gic_real c = car.state[MOVED_STATE_C_N], d = car.state[MOVED_STATE_D_N];
+    gic_restart(&car, from / 1000.0);
+    for (int k = from; k < to; ++k)
+        failed += moved_step(&car, 0.001, GIC_RK4) != GIC_OK;
+    const int of_c = (int)(car.state[MOVED_STATE_C_N] - c), of_d = (int)(car.state[MOVED_STATE_D_N] - d);
+    if (of_c != due(100, 0, from, to) || of_d != due(70, 30, from, to))
+        failed += printf("from %d to %d: %d and %d samples, not %d and %d\n", from, to, of_c, of_d, due(100, 0, from, to),
+                         due(70, 30, from, to));
+}
+int main(void)
+{
+    static const int start[] = {0, 20, 30, 50, 65, 80, 99, 100, 101, 149, 151, 199, 1050, 100050};
+    for (int i = 0; i < (int)(sizeof start / sizeof *start); ++i) {
+        failed += moved_setup(&car) != GIC_OK;
+        go(start[i], start[i] + 235);
+    }
+    /* back by part of a period, by one and a half, by many; ahead by as much */
+    failed += moved_setup(&car) != GIC_OK;
+    go(0, 365);
+    go(285, 465);
+    go(315, 465);
+    go(15, 465);
+    go(475, 685);
+    go(725, 985);
+    go(5025, 5165);
+    return failed != 0;
+}
+END
+"$gicgen" moved.veh -o moved.c 2>said && ${CC:-cc} -std=c99 -Wall -Wextra -Werror -I. -I"$root/runtime" moved_main.c moved.c "$root/runtime/gic_runtime.c" -o moved -lm >>said 2>&1 && ./moved >>said 2>&1
+verdict $? "samples where the time is moved: $(grep -v warning said | head -n 3)"
+
 # numbers of samples and effects follow from the time: a scene can not give them
 sed 's/{a: 1}/{a: {value: 1, delay: 0.4}}/' idle.veh >late.veh
 for state in c.samples c.a.effects; do

@@ -108,6 +108,20 @@ noise = {m.group(1): float(m.group(2)) for m in re.finditer(r"^(cart\.x|pull) +(
 check(f"noises {noise}", abs(noise["cart.x"] / 0.001 - 1) < 0.3 and abs(noise["pull"] / 1.0 - 1) < 0.3)
 both = identify(names, table, spring, f"{work}/start.scene", *planted)
 one = identify(names[:2], table[:, :2], spring, f"{work}/start.scene", *planted)
+# columns that nothing moves tell nothing: as without them, but for the rounding of the search (1e-6 of a deviation). Few
+# measurements, where degrees of freedom of another noise would show most
+idle = Path(spring).read_text() + "  side: {type: position, body: cart, point: [0, 0, 1]}\n"
+Path(f"{work}/idle.veh").write_text(idle)
+few = np.column_stack([table[10:90:16, :2], 0.02 * draw.standard_normal((5, 2)) + [0, 1]])
+alone = identify(names[:2], few[:, :2], f"{work}/idle.veh", f"{work}/start.scene", *planted)
+beside = identify([*names[:2], "side.y [m]", "side.z [m]"], few, f"{work}/idle.veh", f"{work}/start.scene", *planted)
+for name in planted:
+    apart = max(abs(alone[name][key] - beside[name][key]) for key in ("value", "deviation", "low", "high"))
+    check(f"{name} beside columns that nothing moves: {apart}", apart < 1e-6 * alone[name]["deviation"])
+still = np.column_stack([clean[:, :2], np.full(len(clean), 0.001)])
+found = identify([*names[:2], "side.y [m]"], still, f"{work}/idle.veh", f"{work}/start.scene", *planted)
+check("a column that stands still", all(abs(found[n]["value"] - v) < 1e-8 * v for n, v in planted.items()))
+
 check("more measurements tell more", all(both[n]["deviation"] < 1.05 * one[n]["deviation"] for n in planted))
 
 # ---- a vehicle -------------------------------------------------------------------------------------------------------------------
