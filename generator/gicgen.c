@@ -225,7 +225,7 @@ static Options read_options(int count, char **word)
     if ((options.formed || options.recovered) && !code && options.task != TASK_REPORT)
         usage_error(options.formed ? "--solve is for code and --report" : "--recovery is for code and --report", NULL);
     if (options.batch.lanes && (!code || fmu))
-        usage_error("--lanes is for code", NULL);
+        usage_error("--lanes is for code, without --fmu and --report", NULL);
     if (options.derivatives && !fmu && (options.task != TASK_GENERATE || options.scene))
         usage_error("--derivatives is for the code of one vehicle in any scene, without --batch and --scene; "
                     "vehicles of a batch have derivatives beside it (models/DERIVATIVES.md, Many vehicles)",

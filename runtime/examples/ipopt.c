@@ -6,7 +6,8 @@
  *
  *     cc -I/usr/include/coin -I/usr/include/coin-or runtime/examples/ipopt.c -lgic -lipopt -lm
  *
- * Writes CSV: the number, then those that were found. */
+ * Writes CSV: the number, those that were found, then the formulas within bounds. Exit status 1 if a formula is outside
+ * of its bounds by more than a thousandth of their width: then no numbers that keep them were found. */
 #include <IpStdCInterface.h>
 #include <gic.h>
 #include <math.h>
@@ -186,6 +187,27 @@ static int fail(const Problem *problem)
     return 1;
 }
 
+/* Those within bounds, as they were and are. Returns how many are outside, which it says. */
+static int write_formulas(const Problem *problem, const double *before)
+{
+    const double least = 1e-3, rounding = 1e-6;
+    int outside = 0;
+    for (int i = 1; i < problem->numbers; ++i) {
+        const Bounded *b = &problem->number[i];
+        const double now = problem->value[i], size = fmax(fabs(b->low), fabs(b->high));
+        const double room = fmax(least * fmin(width(b), size), rounding * (1 + size));
+        printf("\"%s\",%.17g,%.17g,%.17g,%.17g\n", b->name, before[i], now, b->low, b->high);
+        if (now >= b->low - room && now <= b->high + room)
+            continue;
+        ++outside;
+        fprintf(stderr,
+                "gic_ipopt: error: %s = %.6g, not %g to %g: no numbers within their bounds were found that keep it\n"
+                "  remedy: wider bounds, or another start in the scene\n",
+                b->name, now, b->low, b->high);
+    }
+    return outside;
+}
+
 int main(int count, char **word)
 {
     if (count < 5) {
@@ -212,6 +234,11 @@ int main(int count, char **word)
     if (gicl_model_open(problem->library, word[1], &options, &problem->model, problem->said) != GICL_OK ||
         !evaluate_one(problem, 0, NULL))
         return fail(problem);
+    double at_start[NUMBERS];
+    for (int i = 1; i < problem->numbers; ++i)
+        if (!evaluate_one(problem, i, NULL))
+            return fail(problem);
+    memcpy(at_start, problem->value, sizeof at_start);
     const double before = problem->value[0];
     double low[VARIABLES], high[VARIABLES], low_number[NUMBERS], high_number[NUMBERS], x[VARIABLES], value;
     for (int k = 0; k < problem->variables; ++k) {
@@ -247,7 +274,10 @@ int main(int count, char **word)
         const Bounded *v = &problem->variable[k];
         printf("%s,%.17g,%.17g,%.17g,%.17g\n", v->name, problem->start[k], v->low + x[k] * width(v), v->low, v->high);
     }
+    if (!evaluate(problem, x))
+        return fail(problem);
+    const int outside = write_formulas(problem, at_start);
     gicl_messages_free(problem->said);
     gicl_close(problem->library);
-    return 0;
+    return outside > 0;
 }

@@ -408,15 +408,16 @@ static const char *tell_implicit(const StepWatch *watch, double from, const Mome
 {
     const Scene *scene = watch->scene;
     const char *dual = scene->ratio > 1 ? pool_print(watch->pool, ", %d fast steps in each", scene->ratio) : "";
-    const char *instead = scene->ratio > 1            ? "more fast steps in each, one rate (`ratio: 1`)"
+    const char *instead = scene->stiff                ? "every state into the implicit part (`implicit: all`)"
+                          : scene->ratio > 1          ? "more fast steps in each, one rate (`ratio: 1`)"
                           : scene->method == GIC_EXP3 ? "new exponentials more often (`keep_jacobian: 10`)"
                                                       : "new Jacobians more often (`keep_jacobian`)";
     *remedy = pool_print(
         watch->pool, "take %s, or shorter steps; what is wrong shows where results with half the step are different",
         instead);
     return pool_print(watch->pool,
-                      "from t = %.4g s on the run is unstable, though tires or stops keep it within bounds: steps of "
-                      "%.6g s (%s%s) keep '%s' %s, which small ones of rk4 %s",
+                      "from t = %.4g s on the run is wrong, though it stays within bounds: steps of %.6g s (%s%s) keep "
+                      "'%s' %s, which small ones of rk4 %s",
                       from, scene->step, integrator_name(scene->method), dual, worst->moves,
                       worst->still ? "still" : "moving", worst->still ? "move" : "do not");
 }

@@ -561,7 +561,7 @@ static void go_round(Work *w, const Scene *scene)
                       w->trim->goal.steer < 0 ? "give it a driven coordinate that steers, or name the input: steer=NAME"
                                               : remedy(w, "take less speed or curvature: tires and drive have no more"),
                       "no steady cornering at %.6g m/s beyond a lateral acceleration of %.4g m/s^2 found: %s", speed,
-                      fabs(done), reason(w));
+                      done, reason(w));
     }
 }
 

@@ -131,8 +131,11 @@ static fmu_result moved(fmu_instance *instance, const uint32_t *unknown, size_t 
     size_t i;
     instance->kept = *data;
     for (i = 0; i < knowns && result == FMU_OK; ++i) {
-        if (data->mode != FMU_INITIALIZATION && kind_of(known[i]) == FMU_STATE) {
-            data->self.state[index_of(known[i])] += (gic_real)(step * seed[i]);
+        /* what an importer may not set now */
+        if (data->mode != FMU_INITIALIZATION &&
+            (kind_of(known[i]) == FMU_STATE || kind_of(known[i]) == FMU_PARAMETER)) {
+            const int32_t k = index_of(known[i]);
+            *(kind_of(known[i]) == FMU_STATE ? &data->self.state[k] : &data->self.parameter[k]) += (gic_real)(step * seed[i]);
             data->rated = data->seen = data->located = 0;
             continue;
         }
@@ -150,11 +153,11 @@ static fmu_result moved(fmu_instance *instance, const uint32_t *unknown, size_t 
     return result;
 }
 
-/* Central, of fourth order, with steps of 1e-5 along the largest seed. */
+/* Central, of fourth order, with steps of 1e-5 along the largest seed. Summed so that what does not change gives 0. */
 static fmu_result differences(fmu_instance *instance, const uint32_t *unknown, size_t unknowns, const uint32_t *known,
                               size_t knowns, const double *seed, double *out)
 {
-    static const double factor[4] = {1, -8, 8, -1}, place[4] = {-2, -1, 1, 2};
+    static const double factor[4] = {-8, 8, 1, -1}, place[4] = {-1, 1, -2, 2};
     double largest = 0, step;
     fmu_result result = FMU_OK;
     size_t i;
@@ -165,7 +168,9 @@ static fmu_result differences(fmu_instance *instance, const uint32_t *unknown, s
     for (i = 0; i < unknowns; ++i)
         out[i] = 0;
     for (k = 0; k < 4 && result == FMU_OK && largest > 0; ++k)
-        result = moved(instance, unknown, unknowns, known, knowns, seed, place[k] * step, factor[k] / (12 * step), out);
+        result = moved(instance, unknown, unknowns, known, knowns, seed, place[k] * step, factor[k], out);
+    for (i = 0; i < unknowns; ++i)
+        out[i] /= 12 * step;
     return result;
 }
 
@@ -179,6 +184,12 @@ fmu_result fmu_directional(fmu_instance *instance, const uint32_t *unknown, size
         return result;
     for (i = 0; i < knowns; ++i)
         inexact |= kind_of(known[i]) == FMU_ROAD && seed[i] != 0;
+    for (i = 0; i < knowns && instance->data.ground.given && instance->data.mode != FMU_INITIALIZATION; ++i)
+        if (kind_of(known[i]) == FMU_PARAMETER && FMU_DESCRIPTOR.parameter_geometric[index_of(known[i])] && seed[i] != 0)
+            return fmu_say(instance, FMU_ERROR,
+                           "where the importer gives the road there are no derivatives by value reference %u, which changes "
+                           "the geometry, after initialization",
+                           (unsigned)known[i]);
     for (i = 0; i < unknowns; ++i) /* of contacts */
         inexact |= kind_of(unknown[i]) == FMU_INDICATOR && index_of(unknown[i]) >= FMU_INDICATORS - FMU_CONTACTS;
     return (inexact ? differences : exact)(instance, unknown, unknowns, known, knowns, seed, out);

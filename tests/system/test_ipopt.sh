@@ -46,6 +46,10 @@ check 'a run' mass '(a - 1)^2' 'cart.x=3:3' parameter/a=-5:5 parameter/b=-5:5
 check 'a constraint' near parameter/b 2
 check 'a run' mass '(a - 1)^2' 'cart.x=3:3' parameter/a=-5:5 parameter/b=-5:1.5
 check 'a constraint and a bound' near parameter/a 1.5
+check 'the formula is told' sh -c "grep -q '^\"cart.x\",0.7[45][0-9]*,[32][0-9.]*,3,3' '$work/found'"
+# out of reach: a + b is 2 at most
+out_of_reach() { ! mass '(a - 1)^2' 'cart.x=5:6' parameter/a=-1:1 parameter/b=-1:1 && grep -q 'cart.x = 2.* not 5 to 6' "$work/err" && near '"cart.x"' 2; }
+check 'a bound that can not be kept' out_of_reach
 
 # mistakes
 check 'no bounds' eval '! "$solve" "$work/mass.veh" "$work/mass.scene" a parameter/a'

@@ -106,7 +106,7 @@ while read -r model scene integrator ratio duration long short line; do
         run -q --engine tcc "$models/$model.veh" "$work/$scene.scene" -o "$work/run.csv"
         if [ "$step" = "$long" ]; then
             check "$what, $step s: fails" exits 1
-            check "$what, $step s: time, quantity" says "error: from t = [0-9.]* s on the run is unstable.* steps of ${step}[0-9]* s .* keep '[a-z_.]*' \\(moving\\|still\\), which small ones"
+            check "$what, $step s: time, quantity" says "error: from t = [0-9.]* s on the run is wrong.* steps of ${step}[0-9]* s .* keep '[a-z_.]*' \\(moving\\|still\\), which small ones"
             check "$what, $step s: a remedy" says 'remedy: take .*, or shorter steps'
         else
             check "$what, $step s: good" exits 0

@@ -23,10 +23,11 @@ words = [*(f"input/{pedal}[{k}]={reach}" for k in range(4) for pedal, reach in (
          *(f"input/rack[{k}]=-0.06:0.06" for k in range(1, 10))]
 said = subprocess.run([ipopt, model, path, "time", f"peak(aside)=0:{LIMIT}", *words], capture_output=True, text=True)
 assert said.returncode == 0, said.stderr
-rows = list(csv.DictReader(said.stdout.splitlines()))
+*rows, kept = csv.DictReader(said.stdout.splitlines())  # the last is the formula within bounds
 first, least = float(rows[0]["start"]), float(rows[0]["value"])
 names = [r["variable"] for r in rows[1:]]
 best, low, high = (np.array([float(r[key]) for r in rows[1:]]) for key in ("value", "low", "high"))
+check(f"the distance is told: {kept}", kept["variable"] == "peak(aside)" and float(kept["value"]) <= 1.001 * LIMIT)
 check("all numbers are told", names == [w.split("=")[0] for w in words])
 check("within bounds", bool(np.all((best >= low) & (best <= high))))
 
