@@ -76,6 +76,7 @@ typedef struct Suspect {
     int contact;
     double time, total, factor, lasts; /* s; all bounces so far; the last one; s of load in it */
     double worst;                      /* logarithm, of one bounce, either way */
+    bool stays;                        /* in small steps it comes to rest; `factor` is against how it came */
     Snapshot free, deep;               /* before it, and where the element has most load in small steps */
 } Suspect;
 
@@ -193,9 +194,10 @@ typedef struct Flight {
     double gap, speed, acceleration;
 } Flight;
 
-/* A state after `span` s at its present rates; *slope: of the number of a contact until then. */
+/* A state after `span` s at its present rates; *slope: of the number of a contact until then; *free: it has none of its
+ * load then. */
 static int move_on(const BounceWatch *watch, const gic_model *code, int contact, double span, double time,
-                   double *state, double *slope)
+                   double *state, double *slope, bool *free)
 {
     double rate[watch->states], press[watch->count], later[watch->count];
     int status = code->rhs(watch->eye, time, state, rate);
@@ -206,24 +208,28 @@ static int move_on(const BounceWatch *watch, const gic_model *code, int contact,
     if (status == GIC_OK)
         status = code->contacts->press(watch->eye, time + span, state, later);
     *slope = status == GIC_OK ? (later[contact] - press[contact]) / span : 0;
+    *free = status == GIC_OK && later[contact] <= 0;
     return status;
 }
 
-/* Of a contact at the state of the watch's instance. */
-static int eye_flight(const BounceWatch *watch, const gic_model *code, Flight *flight)
+/* Of the bounce's contact at the state of the watch's instance; *free: false where the body is so near that it has a
+ * load again at once. */
+static int eye_flight(const BounceWatch *watch, const gic_model *code, Flight *flight, bool *free)
 {
-    const double span = 1e-5; /* s; a speed is off by half of it times the acceleration */
+    const double longest = 1e-5, shortest = 1e-8; /* s; a speed is off by half of it times the acceleration */
     const int contact = watch->bounce.contact;
     const double time = gic_time(watch->eye);
     double state[watch->states], press[watch->count], speed, next;
-    memcpy(state, instance_array(watch->eye, code->state_offset), sizeof state);
     int status = eye_press(watch, code, press);
-    if (status == GIC_OK)
-        status = move_on(watch, code, contact, span, time, state, &speed);
-    if (status == GIC_OK)
-        status = move_on(watch, code, contact, span, time + span, state, &next);
-    if (status == GIC_OK)
-        *flight = (Flight){press[contact], speed, (next - speed) / span};
+    *free = false;
+    for (double span = longest; status == GIC_OK && !*free && span >= shortest; span /= 10) {
+        memcpy(state, instance_array(watch->eye, code->state_offset), sizeof state);
+        status = move_on(watch, code, contact, span, time, state, &speed, free);
+        if (status == GIC_OK && *free)
+            status = move_on(watch, code, contact, span, time + span, state, &next, free);
+        if (status == GIC_OK && *free)
+            *flight = (Flight){press[contact], speed, (next - speed) / span};
+    }
     return status;
 }
 
@@ -244,10 +250,16 @@ static int small_step(const BounceWatch *watch, const gic_model *code, double st
     return status;
 }
 
+/* How a bounce ends in small steps. */
+typedef enum Ending {
+    ENDS_UNKNOWN, /* a step fails */
+    ENDS_FREE,
+    ENDS_LOADED, /* the body is never free after the contact: it has come to rest there */
+} Ending;
+
 /* From the start of the bounce over `steps` of the run's, in `parts` parts each, and on until the body is free; where
- * it bounces again before, back to where it was free last. *flight: there; *lasts: s with a load. False: it is never
- * free after the contact, or a step fails. */
-static bool replay_in(BounceWatch *watch, const gic_model *code, int steps, int parts, Flight *flight, double *lasts)
+ * it bounces again before, back to where it was free last. *flight: there; *lasts: s with a load. */
+static Ending replay_in(BounceWatch *watch, const gic_model *code, int steps, int parts, Flight *flight, double *lasts)
 {
     const int last = steps * parts;
     const double step = watch->scene->step / parts;
@@ -262,7 +274,7 @@ static bool replay_in(BounceWatch *watch, const gic_model *code, int steps, int 
     }
     for (int k = 0; k < last || (number > 0 && k < last + MORE * parts); ++k) {
         if (small_step(watch, code, step, &number) != GIC_OK)
-            return false;
+            return ENDS_UNKNOWN;
         if (number > 0 && k < last)
             *lasts += step;
         if (number > most) {
@@ -277,8 +289,9 @@ static bool replay_in(BounceWatch *watch, const gic_model *code, int steps, int 
     if (number > 0 && free)
         put(watch, code, &watch->risen);
     if (number > 0 && !free)
-        return false;
-    return eye_flight(watch, code, flight) == GIC_OK;
+        return ENDS_LOADED;
+    const int status = eye_flight(watch, code, flight, &free);
+    return status != GIC_OK ? ENDS_UNKNOWN : free ? ENDS_FREE : ENDS_LOADED;
 }
 
 /* Is a bounce in small steps what it is in steps of a CLEARER-th, up to a tenth of its energy, and long enough for
@@ -292,28 +305,31 @@ static bool is_clear(const Flight *coarse, const Flight *fine, double loaded)
 
 /* The same in small steps; where the run's body has more energy than it came with, `gained`, in smaller and smaller
  * ones until that changes nothing. */
-static bool replay(BounceWatch *watch, const gic_model *code, int steps, bool gained, Flight *flight, double *lasts)
+static Ending replay(BounceWatch *watch, const gic_model *code, int steps, bool gained, Flight *flight, double *lasts)
 {
     const Scene *scene = watch->scene;
     const int least = (FINE + watch->bounce.loaded) / (watch->bounce.loaded + 1);
     int parts = least > scene->ratio ? least : scene->ratio;
     int64_t before = watch->eye->rhs_count;
-    bool known = replay_in(watch, code, steps, parts, flight, lasts), clear = !gained;
+    Ending ending = replay_in(watch, code, steps, parts, flight, lasts);
+    bool clear = !gained;
     watch->replays += watch->eye->rhs_count - before;
     while (!clear && (int64_t)(steps + MORE) * parts * CLEARER * 4 <= watch->clearing) {
         const Flight coarse = *flight;
-        const bool comparable = known;
+        const Ending before_that = ending;
         parts *= CLEARER;
         before = watch->eye->rhs_count;
-        known = replay_in(watch, code, steps, parts, flight, lasts);
+        ending = replay_in(watch, code, steps, parts, flight, lasts);
         watch->clearing -= watch->eye->rhs_count - before;
-        clear = comparable && known && is_clear(&coarse, flight, *lasts / scene->step * parts);
+        clear =
+            before_that == ending &&
+            (ending == ENDS_LOADED || (ending == ENDS_FREE && is_clear(&coarse, flight, *lasts / scene->step * parts)));
     }
-    return known;
+    return clear || ending == ENDS_FREE ? ending : ENDS_UNKNOWN;
 }
 
 /* The bounce makes its contact bounce too high. */
-static void suspect(BounceWatch *watch, const gic_model *code, double factor, double lasts)
+static void suspect(BounceWatch *watch, const gic_model *code, double factor, double lasts, bool stays)
 {
     double *sum = &watch->sum[watch->bounce.contact];
     Suspect *now = &watch->suspect[watch->suspects++];
@@ -323,6 +339,7 @@ static void suspect(BounceWatch *watch, const gic_model *code, double factor, do
                      .factor = factor,
                      .worst = watch->worst[watch->bounce.contact],
                      .lasts = lasts,
+                     .stays = stays,
                      .free = watch->start,
                      .deep = watch->deep};
     watch->start = snapshot_new(watch->pool, code);
@@ -356,13 +373,19 @@ static void judge_bounce(BounceWatch *watch, const gic_model *code, const Snapsh
         return;
     Flight now, right;
     double lasts;
+    bool stays = false;
     put(watch, code, at);
-    bool known = eye_flight(watch, code, &now) == GIC_OK;
+    bool free = false;
+    const bool known = eye_flight(watch, code, &now, &free) == GIC_OK && free;
     const Flight came = {bounce->gap, bounce->speed, 0};
     const bool gained = known && energy_of(&now, now.acceleration) > runaway * energy_of(&came, now.acceleration);
-    known = known && replay(watch, code, steps, gained, &right, &lasts);
-    if (!known)
+    const Ending ending = known ? replay(watch, code, steps, gained, &right, &lasts) : ENDS_UNKNOWN;
+    if (ending == ENDS_LOADED && gained) { /* it should have come to rest: nothing to compare with but how it came */
+        right = came;
+        stays = true;
+    } else if (ending != ENDS_FREE) {
         return;
+    }
     const double least = isnan(bounce->speed) ? 0 : rebound_least * bounce->speed * bounce->speed;
     const double a = now.gap < right.gap ? now.acceleration : right.acceleration; /* the other may be at its end */
     const double after = energy_of(&now, a), low = fmax(energy_of(&right, a), least);
@@ -374,7 +397,7 @@ static void judge_bounce(BounceWatch *watch, const gic_model *code, const Snapsh
     watch->sum[bounce->contact] += log(factor);
     watch->worst[bounce->contact] = fmax(watch->worst[bounce->contact], fabs(log(factor)));
     if (watch->sum[bounce->contact] > log(too_much) && lasts > 0)
-        suspect(watch, code, factor, lasts);
+        suspect(watch, code, factor, lasts, stays);
 }
 
 /* ---- while the run goes on --------------------------------------------------------------------------------------- */
@@ -399,7 +422,7 @@ static bool may_have_touched(const BounceWatch *watch, int i)
     const double now = watch->press[0][i], before = watch->press[1][i], first = watch->press[2][i];
     const double speed = (before - first) / (watch->at[1] - watch->at[2]);
     const double ahead = speed * watch->scene->step * (now < before ? safety : 1);
-    return watch->known == FREE && now <= 0 && before < 0 && first < before && before + ahead > 0;
+    return watch->known == FREE && now <= 0 && before <= 0 && first < before && before + ahead > 0;
 }
 
 /* A contact that the last look sees first begins a bounce; so does one that has a load at the first look of all. */
@@ -532,19 +555,23 @@ void bounce_watch_pass(BounceWatch *watch, int64_t steps)
 
 /* ---- after the run ----------------------------------------------------------------------------------------------- */
 
-/* Do steps that are too long for the element explain what a suspect does? Not where it has a load for a shorter time
- * than its stiffness makes it have one, nor where steps that resolve the element go wrong by more than it makes them,
- * as of wheels that pass over an edge or a rough road. */
-static bool is_explained(const BounceWatch *watch, const Suspect *suspect)
+/* The angular frequency that the element of a suspect adds; 0: none. */
+static double frequency_of(const BounceWatch *watch, const Suspect *suspect)
 {
     const Snapshot *const at[2] = {&suspect->free, &suspect->deep};
     double sum[2];
     for (int k = 0; k < 2; ++k)
         sum[k] = step_theory_stiffness(watch->theory, watch->scene, watch->engine, at[k]->time, at[k]->state,
                                        at[k]->input, at[k]->discrete);
-    if (!(sum[1] > sum[0]))
-        return false;
-    const double frequency = sqrt(sum[1] - sum[0]), turn = frequency * watch->scene->step;
+    return sqrt(fmax(sum[1] - sum[0], 0));
+}
+
+/* Do steps that are too long for the element explain what a suspect does? Not where it has a load for a shorter time
+ * than its stiffness makes it have one, nor where steps that resolve the element go wrong by more than it makes them,
+ * as of wheels that pass over an edge or a rough road. */
+static bool is_explained(const BounceWatch *watch, const Suspect *suspect)
+{
+    const double frequency = frequency_of(watch, suspect), turn = frequency * watch->scene->step;
     const bool small = watch->scene->method != GIC_AB3 && suspect->worst <= 0.2 * turn * turn;
     return frequency * suspect->lasts >= explains && (turn >= resolved || small);
 }
@@ -559,15 +586,27 @@ const char *bounce_watch_judge(const BounceWatch *watch, const char **remedy)
     Pool *pool = watch->pool;
     const Scene *scene = watch->scene;
     const bool lags = scene->method == GIC_AB3 || scene->method == GIC_IMEX;
+    const double pi = 3.141592653589793;
+    const double shortest = fmin(found->lasts, pi / frequency_of(watch, found));
+    const double bounce = found->stays ? shortest : found->lasts;
+    /* steps that end where contacts begin do not help where a contact is over within one */
+    const bool helps = !scene->locate && !found->stays && shortest > scene->step;
     *remedy = pool_print(pool, "take steps of at most about %.2g s%s, or variable ones (--integrator adams)",
-                         found->lasts / (lags ? LAGGING : RESOLVED),
-                         scene->locate ? "" : ", or `locate: true`, which ends steps where contacts begin and end");
+                         bounce / (lags ? LAGGING : RESOLVED),
+                         helps ? ", or `locate: true`, which ends steps where contacts begin and end" : "");
+    const char *times = pool_print(pool, "it is in contact for %.3g s, %.2g steps of %.6g s (%s)", found->lasts,
+                                   found->lasts / scene->step, scene->step, integrator_name(scene->method));
+    if (found->stays)
+        return pool_print(pool,
+                          "%s gives back more than it may: at t = %.4g s a body goes away with %.3g times the energy "
+                          "that it came with, and in small steps comes to rest there; %s",
+                          watch->name[found->contact], found->time, found->factor, times);
     return pool_print(pool,
                       "%s gives back more than it may: at t = %.4g s a body bounces %.3g times as high as in small "
-                      "steps%s; it is in contact for %.3g s, %.2g steps of %.6g s (%s)",
+                      "steps%s; %s",
                       watch->name[found->contact], found->time, found->factor,
                       found->total > 1.001 * found->factor
                           ? pool_print(pool, ", with bounces before it %.3g times", found->total)
                           : "",
-                      found->lasts, found->lasts / scene->step, scene->step, integrator_name(scene->method));
+                      times);
 }

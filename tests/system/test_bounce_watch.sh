@@ -36,6 +36,51 @@ for method in ab3 rk4; do
     check "a rough road is no stop: $method" sh -c "! grep -q 'gives back' err"
 done
 
+# pushed onto a stop by a constant force a body comes to rest there, or bounces as high as it began: it never has more than
+# the sqrt(2 F 0.1) m/s of its way to the stop. Where the force is 20 N it is just there at the end of a step, its gap 0
+while read -r force damping method step wrong; do
+    cat >pushed.veh <<END
+gicgen: 1
+model: pushed
+base: ground
+gravity: [0, 0, 0]
+bodies:
+  m: {mass: 1, com: [0, 0, 0], inertia: [1, 1, 1]}
+joints:
+  p: {type: prismatic, bodies: [ground, m], axis: [1, 0, 0]}
+coordinates:
+  x: {type: translation, bodies: [ground, m], axis: [1, 0, 0], range: [-10, 10]}
+forces:
+  push: {type: force, coordinate: x, value: "$force"}
+  s: {type: stop, coordinate: x, high: 0.1, stiffness: 1e6, damping: $damping, fade: 0.0001}
+outputs:
+  x: {type: coordinate, coordinate: x}
+END
+    for locate in false true; do
+        printf 'gicscene: 1\nduration: %s\nintegrator: %s\nstep: %s\nlocate: %s\n' "$(awk "BEGIN { print 200 * $step }")" $method $step $locate >pushed.scene
+        run -q pushed.veh pushed.scene -o pushed.csv
+        # it is reported where a rate is above, and nowhere else
+        fast=$(awk -F, -v most="$(awk "BEGIN { print 1.02 * sqrt(0.2 * $force) }")" 'NR > 1 && $3 ^ 2 > most ^ 2 { n = 1 } END { print n + 0 }' pushed.csv)
+        check "$force N, $damping N s/m, $method, $step s, locate $locate" exits "$fast"
+        [ $locate = true ] || check "and that is wrong" [ "$fast" -eq "$wrong" ]
+        [ "$fast" -eq 0 ] || check "as a stop that gives back too much, or a step that goes too far" says "the high end of stop 's' gives back more than it may\|moves too far within a step"
+    done
+done <<END
+50 2000 ros3 0.01 1
+50 2000 ros2 0.01 1
+50 2000 exp3 0.02 1
+50 2000 rk4 0.02 1
+50 2000 rk4 0.01 1
+50 2000 imex 0.02 1
+20 0 rk4 0.02 1
+20 2000 rk4 0.02 1
+20 0 ab3 0.01 1
+5 2000 ros3 0.01 1
+50 2000 rk4 0.0004 0
+20 0 rk4 0.0002 0
+50 2000 ros3 0.0002 0
+END
+
 # between two undamped stops a body keeps its 1 m/s; thrown back hundreds of times as fast it is never free for long
 cat >between.veh <<END
 gicgen: 1
