@@ -11,7 +11,9 @@
  *
  * States that have a share in stiff motions are implicit. That this is enough for stability is then checked by the
  * eigenvalues of two steps of imex in matrices, with A where it is exact and with what is left of A in the implicit
- * part; where they grow, the states that move most in what grows are implicit, too. */
+ * part; where they grow, the states that move most in what grows are implicit, too. So it is where a slow motion is
+ * wrong: a heavy body on a stiff spring has next to no share in what the light one does at its other end, but the whole
+ * of what the spring does in a step is wrong for it. */
 #include "base/catch.h"
 #include "base/message.h"
 #include "base/text.h"
@@ -40,6 +42,9 @@ static const double alike = 0.01;    /* relative: numbers as near are on one sid
 static const double harmless = 1e-6; /* growth in a step that a motion without damping may have */
 static const double motionless = 1e-3; /* |r - 1| of motions too slow to matter, among them neutral ones, whose double
                                         * eigenvalue 1 rounding scatters */
+static const double accurate = 0.002;  /* relative error of the eigenvalue of a slow motion that steps may make, */
+static const double as_explicit = 4;   /* or so many times that of explicit steps */
+static const double slowest = 1e-4;    /* |z| of a motion that is looked at for that: others hardly move in a run */
 static const double part = 2 / 3.0;    /* of a step, the reach of imex */
 
 /* A state about which the model moves. */
@@ -68,6 +73,13 @@ typedef struct Splitter {
 } Splitter;
 
 /* ---- motions ---------------------------------------------------------------------------------------------- */
+
+/* The root of r^2 - p r + q = 0 that is nearer to another number. */
+static double complex nearer_root(double complex p, double complex q, double complex to)
+{
+    const double complex s = csqrt(p * p / 4 - q), a = p / 2 + s, b = p / 2 - s;
+    return cabs(a - to) < cabs(b - to) ? a : b;
+}
 
 /* The larger root of r^2 - p r + q = 0. */
 static double larger_root(double complex p, double complex q)
@@ -291,22 +303,62 @@ static void add_movers(Splitter *s, const gsl_matrix_complex *vectors, size_t k)
     choose(s, moved, most > motionless * all ? most : 0);
 }
 
-/* Add what moves most in the motion that grows most; all, where that can't be told. */
-static void grow(Splitter *s, const Point *point)
+/* The factor that is nearest to r. */
+static size_t nearest(const gsl_vector_complex *value, double complex r)
+{
+    size_t best = 0;
+    double least_distance = INFINITY;
+    for (size_t k = 0; k < value->size; ++k) {
+        const gsl_complex own = gsl_vector_complex_get(value, k);
+        const double distance = cabs(GSL_REAL(own) + GSL_IMAG(own) * I - r);
+        if (distance < least_distance) {
+            least_distance = distance;
+            best = k;
+        }
+    }
+    return best;
+}
+
+/* exp z of the slow motion of which steps miss more than they may, and most; 0: there is none. */
+static double complex wrong_motion(const Splitter *s, const Point *point, const gsl_vector_complex *value)
+{
+    double complex wrong = 0;
+    double most = 1;
+    for (int k = 0; k < point->modes->count; ++k) {
+        const Mode *mode = &point->modes->mode[k];
+        const double complex z = s->step * (mode->real + mode->imaginary * I), right = cexp(z);
+        if (cabs(z) > resolved || cabs(z) < slowest)
+            continue;
+        const gsl_complex own = gsl_vector_complex_get(value, nearest(value, right));
+        const double complex alone = nearer_root(4 / 3.0 * (1 + z), (1 + 2 * z) / 3, right);
+        const double off = cabs(clog(GSL_REAL(own) + GSL_IMAG(own) * I) - z);
+        const double allowed = fmax(accurate * cabs(z), as_explicit * cabs(clog(alone) - z));
+        if (off > most * allowed) {
+            most = off / allowed;
+            wrong = right;
+        }
+    }
+    return wrong;
+}
+
+/* Add what moves most in the motion that grows most, or with the factor nearest to r, where r is not 0; all, where that
+ * can't be told. */
+static void grow(Splitter *s, const Point *point, double complex r)
 {
     const size_t size = 2 * (size_t)s->linear->count;
     gsl_vector_complex *value = gsl_vector_complex_alloc(size);
     gsl_matrix_complex *vector = gsl_matrix_complex_alloc(size, size);
     if (find_factors(s, point, value, vector))
-        add_movers(s, vector, most_grown(value));
+        add_movers(s, vector, r == 0 ? most_grown(value) : nearest(value, r));
     else
         memset(s->chosen, true, (size_t)s->groups);
     gsl_matrix_complex_free(vector);
     gsl_vector_complex_free(value);
 }
 
-/* True if steps with the choice are as stable about this point as with all numbers implicit; else the choice grows. */
-static bool is_stable(Splitter *s, const Point *point)
+/* True if steps with the choice are as stable about this point as with all numbers implicit, and slow motions right;
+ * else the choice grows. */
+static bool will_do(Splitter *s, const Point *point)
 {
     double most = harmless;
     int outside = 0;
@@ -322,10 +374,11 @@ static bool is_stable(Splitter *s, const Point *point)
     for (size_t k = 0; k < value->size && found; ++k)
         outside -= growth_of(value, k) > harmless;
     const bool stable = found && growth_of(value, worst) <= most && outside >= 0;
+    const double complex wrong = stable ? wrong_motion(s, point, value) : 0;
     gsl_vector_complex_free(value);
-    if (!stable)
-        grow(s, point);
-    return stable;
+    if (!stable || wrong != 0)
+        grow(s, point, wrong);
+    return stable && wrong == 0;
 }
 
 static bool all_chosen(const Splitter *s)
@@ -585,7 +638,7 @@ const Splitting *stiff_states(Pool *pool, const Model *model, Solve solve, Recov
         count_shares(&s, point);
     choose(&s, s.share, least);
     for (const Point *point = s.points; point && !all_chosen(&s);)
-        point = is_stable(&s, point) ? point->next : s.points; /* a choice that has grown is another one everywhere */
+        point = will_do(&s, point) ? point->next : s.points; /* a choice that has grown is another one everywhere */
     if (!s.points)
         memset(s.chosen, true, (size_t)s.groups);
     Splitting *splitting = pool_alloc(pool, sizeof *splitting);
