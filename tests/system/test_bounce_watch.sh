@@ -57,7 +57,7 @@ outputs:
   x: {type: coordinate, coordinate: x}
 END
     for locate in false true; do
-        printf 'gicscene: 1\nduration: %s\nintegrator: %s\nstep: %s\nlocate: %s\n' "$(awk "BEGIN { print 200 * $step }")" $method $step $locate >pushed.scene
+        printf 'gicscene: 1\nduration: %s\nintegrator: %s\nstep: %s\nlocate: %s\n' "$(awk "BEGIN { print 200 * $step }")" "$method" "$step" $locate >pushed.scene
         run -q pushed.veh pushed.scene -o pushed.csv
         # it is reported where a rate is above, and nowhere else
         fast=$(awk -F, -v most="$(awk "BEGIN { print 1.02 * sqrt(0.2 * $force) }")" 'NR > 1 && $3 ^ 2 > most ^ 2 { n = 1 } END { print n + 0 }' pushed.csv)
