@@ -13,7 +13,8 @@
  *     gic_lane time, x, y, out[3];
  *     LANE_HEIGHTS(road, lane, &time, &x, &y, out);
  *
- * sets out[0] = h, out[1] = dh/dx, out[2] = dh/dy, metres, world frame; 0 where the road is NULL. Like gic_lanes.h it
+ * sets out[0] = h, out[1] = dh/dx, out[2] = dh/dy, metres, world frame; 0 where the road is NULL.
+ * LANE_FRICTIONS(road, lane, &time, &x, &y) is `friction`, 1 where there is none. Like gic_lanes.h it
  * may be included again for another GIC_LANES. It needs no gic_road.c. */
 #ifndef GIC_LANES
 #error "include gic_lanes.h first"
@@ -27,6 +28,7 @@
 #include <stddef.h>
 
 #define LANE_HEIGHTS GIC_LANES_NAME(lane_heights_, GIC_LANES)
+#define LANE_FRICTIONS GIC_LANES_NAME(lane_frictions_, GIC_LANES)
 #define LANE_ONE_KIND GIC_LANES_NAME(lane_one_kind_, GIC_LANES)
 #define LANE_ROAD_NUMBER GIC_LANES_NAME(lane_road_number_, GIC_LANES)
 #define LANE_SUPPORT GIC_LANES_NAME(lane_support_, GIC_LANES)
@@ -42,6 +44,16 @@
 /* Where a number is in memory, and how far the next one is. */
 #define GIC_PLACE_OF(number) ((int64_t)(uintptr_t)(number))
 #define GIC_REAL_SIZE ((int64_t)sizeof(gic_real))
+/* A number of each lane's patch; `patch` and `same` are the function's. */
+#define GIC_OF_PATCHES(member) \
+    do { \
+        if (same) { \
+            member = LANE(patch[0]->member); \
+        } else { \
+            FOR_LANES(l) \
+            member[l] = patch[l]->member; \
+        } \
+    } while (0)
 #define GIC_TWO_PI GIC_R(6.283185307179586476925286766559)
 
 /* The first bump that may not have ended before x: the others begin more than the longest one's length before it. */
@@ -445,6 +457,96 @@ static __attribute__((noinline, unused)) void LANE_HEIGHTS(const gic_road *const
         for (i = 0; i < 3; ++i)
             out[i] = LANE_SELECT(of_kind, found[i], out[i]);
     }
+}
+
+/* 0 below 0, 1 from 1 on, smooth between. */
+LANE_FUNCTION gic_lane GIC_LANES_NAME(lane_smooth_, GIC_LANES)(gic_lane t)
+{
+    const gic_lane zero = {GIC_R(0.0)}, one = LANE(GIC_R(1.0));
+    const gic_lane between = LANE_SELECT((gic_mask)(t < one), t * t * (GIC_R(3.0) - GIC_R(2.0) * t), one);
+    return LANE_SELECT((gic_mask)(t <= zero), zero, between);
+}
+
+/* 1 inside [low, high], 0 outside, smooth over `fade` around the ends. */
+LANE_FUNCTION gic_lane GIC_LANES_NAME(lane_inside_, GIC_LANES)(gic_lane place, gic_lane low, gic_lane high,
+                                                               gic_lane fade)
+{
+    return GIC_LANES_NAME(lane_smooth_, GIC_LANES)((place - low) / fade + GIC_R(0.5)) *
+           GIC_LANES_NAME(lane_smooth_, GIC_LANES)((high - place) / fade + GIC_R(0.5));
+}
+
+/* Friction of patched roads; same: they are one road. */
+static __attribute__((unused)) gic_lane GIC_LANES_NAME(lane_patches_, GIC_LANES)(const gic_road *const *road, int same,
+                                                                                 gic_lane x, gic_lane y)
+{
+    static const gic_friction_patch none = {0, 0, 0, 0, 0, 1};
+    const gic_lane zero = {GIC_R(0.0)};
+    const gic_mask all_lanes = (gic_mask)(zero <= zero);
+    gic_lane all = GIC_OF_ROADS(gic_road_patched, value);
+    int32_t most = 0, k;
+    int l;
+    FOR_LANES(l)
+    if (GIC_ROAD_AS(gic_road_patched, l)->count > most)
+        most = GIC_ROAD_AS(gic_road_patched, l)->count;
+    for (k = 0; k < most; ++k) {
+        const gic_friction_patch *patch[GIC_LANES];
+        gic_lane x_low, x_high, y_low, y_high, value, fade, in;
+        gic_mask has = all_lanes;
+        if (same) {
+            patch[0] = &GIC_ROAD_AS(gic_road_patched, 0)->patch[k];
+        } else {
+            FOR_LANES(l)
+            {
+                const gic_road_patched *const patched = GIC_ROAD_AS(gic_road_patched, l);
+                has[l] = -(k < patched->count);
+                patch[l] = k < patched->count ? &patched->patch[k] : &none;
+            }
+        }
+        GIC_OF_PATCHES(x_low);
+        GIC_OF_PATCHES(x_high);
+        GIC_OF_PATCHES(y_low);
+        GIC_OF_PATCHES(y_high);
+        GIC_OF_PATCHES(fade);
+        in = GIC_LANES_NAME(lane_inside_, GIC_LANES)(x, x_low, x_high, fade);
+        if (!LANE_ANY(has & ~(gic_mask)(in == GIC_R(0.0))))
+            continue; /* 0 times what is finite */
+        in = in * GIC_LANES_NAME(lane_inside_, GIC_LANES)(y, y_low, y_high, fade);
+        GIC_OF_PATCHES(value);
+        all = LANE_SELECT(has, all + in * (value - all), all);
+    }
+    return all;
+}
+
+static __attribute__((noinline, unused)) gic_lane LANE_FRICTIONS(const gic_road *const *road, const int32_t *lane,
+                                                                 const gic_lane *time, const gic_lane *x,
+                                                                 const gic_lane *y)
+{
+    const gic_lane zero = {GIC_R(0.0)};
+    const gic_road *alike[GIC_LANES], *first = NULL;
+    gic_mask on = (gic_mask)(zero > zero);
+    gic_lane out = LANE(GIC_R(1.0));
+    int l, same = 1;
+    FOR_LANES(l)
+    same &= road[l] == road[0];
+    if (same && road[0] && road[0]->friction && road[0]->kind == GIC_ROAD_PATCHED)
+        return GIC_LANES_NAME(lane_patches_, GIC_LANES)(road, 1, *x, *y);
+    FOR_LANES(l)
+    {
+        alike[l] = NULL;
+        if (!road[l] || !road[l]->friction)
+            continue;
+        if (road[l]->kind == GIC_ROAD_PATCHED) {
+            on[l] = -1;
+            first = alike[l] = road[l];
+        } else {
+            out[l] = road[l]->friction(road[l], lane[l], (*time)[l], (*x)[l], (*y)[l]);
+        }
+    }
+    if (!first)
+        return out;
+    FOR_LANES(l)
+    alike[l] = alike[l] ? alike[l] : first;
+    return LANE_SELECT(on, GIC_LANES_NAME(lane_patches_, GIC_LANES)(alike, 0, *x, *y), out);
 }
 
 #undef GIC_ROAD_LANES_NEW

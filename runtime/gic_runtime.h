@@ -99,7 +99,8 @@ typedef enum gic_road_kind {
  * everywhere. `lane` is the instance's lane index. Data of a road follow this head in the user's own structure.
  * For derivatives alone, and NULL where they are not known: `bend` sets the second derivatives h_xx, h_xy, h_yy, 1/m,
  * `friction_slope` those of friction by x and y, 1/m; where they jump, those of the side on which `height` takes the
- * place to be. `kind`: GIC_ROAD_OWN, unless the four functions are those of gic_road.h for that kind. */
+ * place to be. `kind`: GIC_ROAD_OWN, unless `height`, and `friction` of
+ * GIC_ROAD_PATCHED, are those of gic_road.h for that kind. */
 typedef struct gic_road {
     void (*height)(const struct gic_road *road, int32_t lane, gic_real time, gic_real x, gic_real y, gic_real out[3]);
     gic_real (*friction)(const struct gic_road *road, int32_t lane, gic_real time, gic_real x, gic_real y);

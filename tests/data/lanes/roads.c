@@ -42,6 +42,14 @@ static void own_height(const gic_road *road, int32_t lane, gic_real time, gic_re
     out[2] = 2;
 }
 
+static gic_real own_friction(const gic_road *road, int32_t lane, gic_real time, gic_real x, gic_real y)
+{
+    (void)road;
+    ++asked;
+    wrong_calls += time != (gic_real)(lane + 1) / 8;
+    return x > y ? GIC_R(0.5) : (gic_real)(lane + 1);
+}
+
 static gic_real pick(void)
 {
     static const gic_real nice[] = {0,
@@ -82,7 +90,8 @@ int main(void)
                                     {1, 2, GIC_R(0.2), -10, 10},
                                     {1, GIC_R(0.5), -1, 0, 1},
                                     {4, 1, 1, -1, 1}};
-    static const gic_friction_patch patch[] = {{0, 1, 0, 1, GIC_R(0.5), GIC_R(0.5)}};
+    static const gic_friction_patch patch[] = {
+        {0, 1, 0, 1, GIC_R(0.5), GIC_R(0.5)}, {0, 10, -1, 1, GIC_R(0.25), 1}, {2, 3, 0, 4, 2, 1}};
     const gic_iso8608 profile = {'C', 1, 0, 6, 2, 1};
     const gic_road_plane plane = {{gic_plane_height, NULL, gic_plane_bend, NULL, GIC_ROAD_PLANE}, 1, GIC_R(0.5), -1};
     const gic_road_sine sine = {{gic_sine_height, NULL, gic_sine_bend, NULL, GIC_ROAD_SINE}, 1, 4, 0, 1};
@@ -125,11 +134,13 @@ int main(void)
         NULL,
         1,
         patch,
-        1};
-    const gic_road *const road[] = {NULL,          &plane.head,  &sine.head, &bumps.head,   &no_bumps.head,
-                                    &table.head,   &uneven.head, &two.head,  &grid.head,    &cell.head,
-                                    &random.head,  &own,         &sum.head,  &nothing.head, &nested.head,
-                                    &patched.head, &bare.head};
+        3};
+    /* with friction of its own */
+    const gic_road_plane slippery = {{gic_plane_height, own_friction, gic_plane_bend, NULL, GIC_ROAD_PLANE}, 0, 0, 0};
+    const gic_road *const road[] = {NULL,          &plane.head,  &sine.head,    &bumps.head,   &no_bumps.head,
+                                    &table.head,   &uneven.head, &two.head,     &grid.head,    &cell.head,
+                                    &random.head,  &own,         &sum.head,     &nothing.head, &nested.head,
+                                    &patched.head, &bare.head,   &slippery.head};
     enum { ROADS = sizeof road / sizeof *road };
     int i, l, round;
     for (i = 0; i < NX * NY; ++i)
@@ -143,7 +154,7 @@ int main(void)
         const gic_road *under[GIC_LANES];
         int32_t lane[GIC_LANES];
         gic_lane time, x, y, out[3];
-        gic_real expected[GIC_LANES][3];
+        gic_real expected[GIC_LANES][3], friction[GIC_LANES];
         long calls;
         FOR_LANES(l)
         {
@@ -161,10 +172,26 @@ int main(void)
             if (under[l])
                 under[l]->height(under[l], l, time[l], x[l], y[l], expected[l]);
         }
+        FOR_LANES(l)
+        friction[l] = under[l] && under[l]->friction ? under[l]->friction(under[l], l, time[l], x[l], y[l]) : 1;
         calls = asked;
         asked = 0;
         LANE_HEIGHTS(under, lane, &time, &x, &y, out);
+        const gic_lane rubs = LANE_FRICTIONS(under, lane, &time, &x, &y);
         wrong_calls += asked != calls;
+        FOR_LANES(l)
+        {
+            const gic_real apart = rubs[l] - friction[l];
+            ++compared;
+#ifdef EXACT
+            const int good = apart == 0 || (rubs[l] != rubs[l] && friction[l] != friction[l]);
+#else
+            const int good = !(GIC_MATH(fabs)(apart) > (sizeof(gic_real) == 4 ? GIC_R(1e-5) : GIC_R(1e-14)));
+#endif
+            if (!good && ++failed < 10)
+                printf("friction at x = %.17g y = %.17g: %.17g in lanes, %.17g alone\n", (double)x[l], (double)y[l],
+                       (double)rubs[l], (double)friction[l]);
+        }
         FOR_LANES(l)
         for (i = 0; i < 3; ++i) {
             const gic_real a = out[i][l], b = expected[l][i];
