@@ -393,6 +393,8 @@ static void write_statement(Emitter *m, Ex e)
         text_print(&line, "%s road%d[3];\n%*s", real, number, m->indent, "");
         if (width)
             text_print(&line, "if (!%s_ROAD(", function_name(width));
+        else if (m->style->lanes && m->block->across)
+            text_print(&line, "const gic_mask alike%d = LANE_ROAD(", number);
         else if (m->style->lanes)
             text_print(&line, "NEED(LANE_ROAD(");
         else
@@ -401,7 +403,13 @@ static void write_statement(Emitter *m, Ex e)
         text_print(&line, ", ");
         write_whole(m, &line, node->arg[1], is_vector(m, e), width);
         text_print(&line, ", road%d)", number);
-        if (m->style->lanes)
+        if (m->style->lanes && m->block->across)
+            text_print(
+                &line,
+                ";\n%*sNEED(alike%d | ~(LANE_FINITE(road%d[0]) & LANE_FINITE(road%d[1]) & LANE_FINITE(road%d[2])),"
+                "\n%*sGIC_ERROR_ASSUMPTION);\n%*sNEED(alike%d, GIC_ERROR_ROAD);",
+                m->indent, "", number, number, number, number, m->indent + 4, "", m->indent, "", number);
+        else if (m->style->lanes)
             text_print(&line, ", GIC_ERROR_ROAD);");
         else
             text_print(&line,

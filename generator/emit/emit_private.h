@@ -278,6 +278,7 @@ void write_road(Generation *g, Text *out);             /* the function that look
 void write_across(void *context, Text *out, int indent);
 void write_across_lane(void *context, Text *out, int indent);
 const char *friction_template(const Generation *g);           /* of the function that looks friction up */
+const char *vectors_road_template(const Generation *g);       /* of the one that looks roads up under wheels in lanes */
 void write_assumptions(void *context, Text *out, int indent); /* the functions that check them */
 void write_assume(Generation *g, Text *out, int indent, AssumptionAbout about); /* the call of this function */
 void write_images(void *context, Text *out, int indent);    /* copies the numbers of wheels from their mirror images */

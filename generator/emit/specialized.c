@@ -106,6 +106,11 @@ const char *friction_template(const Generation *g)
     return assumes(g, ABOUT_ROAD) ? "friction_across.c.in" : "friction.c.in";
 }
 
+const char *vectors_road_template(const Generation *g)
+{
+    return assumes(g, ABOUT_ROAD) ? "wheel_vectors_road_across.c.in" : "wheel_vectors_road.c.in";
+}
+
 void write_assumptions(void *context, Text *out, int indent)
 {
     Generation *g = context;

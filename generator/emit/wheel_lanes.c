@@ -45,7 +45,7 @@ static void write_vectors_road(void *context, Text *out, int indent)
     const Narrowing *narrowing = v->g->formulation->narrowing;
     (void)indent;
     if (!narrowing || narrowing->road)
-        template_expand(v->g->pool, out, v->g->templates, "wheel_vectors_road.c.in", v->g->model->name, v->lanes,
+        template_expand(v->g->pool, out, v->g->templates, vectors_road_template(v->g), v->g->model->name, v->lanes,
                         &wheel_vector_points, context);
 }
 
@@ -63,6 +63,7 @@ static const Insertion vectors_point[] = {
     {"road", write_vectors_road}, {"friction", write_vectors_friction}, {NULL, NULL}};
 
 const Insertions wheel_vector_points = {(const char *const[]){"wheel_vectors.c.in", "wheel_vectors_road.c.in",
+                                                              "wheel_vectors_road_across.c.in",
                                                               "wheel_vectors_friction.c.in", "wheel_places.c.in", NULL},
                                         vectors_point, NULL};
 

@@ -85,6 +85,64 @@ check "every false assumption is refused" [ $? -eq 0 ]
     gcc -std=c99 -O1 $warnings -o "$work/uneven" "$root/tests/data/narrow/uneven.c" "$work/narrow.c" "$root/runtime/gic_runtime.c" -lm &&
     "$work/uneven" >"$work/out"
 check "what is not the same on both sides is refused" [ $? -eq 0 ]
+# so it is under tires, front and rear ones side by side or not: roads of the other side are a micrometre higher
+cat >"$work/tires.scene" <<'END'
+gicscene: 1
+duration: 1
+step: 0.001
+initial: {velocity: [10, 0, 0]}
+road: {type: bumps, bumps: [{x: 5, length: 2, height: 0.05, tracks: both}]}
+END
+cat >"$work/tires.c" <<'END'
+#include "narrow.h"
+#include <stdio.h>
+static gic_real higher;
+static void height(const gic_road *road, int32_t lane, gic_real time, gic_real x, gic_real y, gic_real out[3])
+{
+    (void)road, (void)lane, (void)time;
+    out[0] = GIC_R(0.001) * x + (y > 0 ? higher : 0), out[1] = GIC_R(0.001), out[2] = 0;
+}
+static gic_real friction(const gic_road *road, int32_t lane, gic_real time, gic_real x, gic_real y)
+{
+    (void)road, (void)lane, (void)time, (void)x;
+    return y > 0 ? 1 - higher : 1;
+}
+int main(void)
+{
+    static const gic_road even = {height, NULL, NULL, NULL, GIC_ROAD_OWN};
+    static const gic_road_plane level = {{gic_plane_height, NULL, NULL, NULL, GIC_ROAD_PLANE}, 0, 0, 0},
+                                tilted = {{gic_plane_height, NULL, NULL, NULL, GIC_ROAD_PLANE}, 0, 0, GIC_R(1e-3)};
+    const gic_road *const good[] = {NULL, &even, &level.head};
+    const gic_road_plane rubs = {{gic_plane_height, friction, NULL, NULL, GIC_ROAD_PLANE}, 0, 0, 0};
+    static hmmwv_tires car, first;
+    int i, failed = hmmwv_tires_setup(&first) != GIC_OK;
+    for (i = 0; i < 3; ++i) {
+        car = first;
+        car.head.road = good[i];
+        failed += hmmwv_tires_step(&car, GIC_R(0.001), GIC_AB3) != GIC_OK;
+    }
+    car = first;
+    car.head.road = &tilted.head;
+    failed += 2 * (hmmwv_tires_step(&car, GIC_R(0.001), GIC_AB3) != GIC_ERROR_ASSUMPTION);
+    higher = GIC_R(1e-6);
+    car = first;
+    car.head.road = &even;
+    failed += 4 * (hmmwv_tires_step(&car, GIC_R(0.001), GIC_AB3) != GIC_ERROR_ASSUMPTION);
+    car = first;
+    car.head.road = &rubs.head;
+    failed += 8 * (hmmwv_tires_step(&car, GIC_R(0.001), GIC_AB3) != GIC_ERROR_ASSUMPTION);
+    printf("%d\n", failed);
+    return failed != 0;
+}
+END
+sed -i 's/#include <stdio.h>/#include "gic_road.h"\n&/' "$work/tires.c"
+for lanes in '' '--lanes 2'; do
+    # shellcheck disable=SC2086  # words
+    "$gicgen" $lanes --scene "$work/tires.scene" "$models/hmmwv_tires.veh" -o "$work/narrow.c" &&
+        gcc -std=gnu99 -O1 $warnings -Wno-psabi -o "$work/tires" "$work/tires.c" "$work/narrow.c" "$root/runtime/gic_runtime.c" "$root/runtime/gic_road.c" -lm 2>"$work/err" &&
+        "$work/tires" >"$work/out"
+    check "roads that differ are refused under tires $lanes: $(cat "$work/out")" [ $? -eq 0 ]
+done
 
 # in lanes the same bits, where elementary functions are libm's: those of gic_lanes.h are made to call them, for the test
 mkdir "$work/libm" && cp "$root"/runtime/*.h "$work/libm" && {
