@@ -124,7 +124,8 @@ static const struct Spread *spread_of(Generation *g)
     }
     if (columns->wheels)
         add_wheels(g, spread, columns, most);
-    add(g, spread, (Piece){.kind = PIECE_CLEAR, .work = room(g->plan->unknowns) * column_lanes(g) / CLEARED});
+    add(g, spread,
+        (Piece){.kind = PIECE_CLEAR, .work = room(g->plan->unknowns) * (columns->lanes + 7) / 8 * 8 / CLEARED});
     add_block(g, spread, PIECE_WHOLE, placed_block(g, &columns->residuals), most);
     const int solved = (block_work(&columns->solution) + 1) * SIDE_BY_SIDE / FASTER;
     if (columns->solution.stores)
