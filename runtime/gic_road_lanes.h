@@ -162,6 +162,16 @@ static __attribute__((unused)) void GIC_LANES_NAME(lane_sines_, GIC_LANES)(const
     out[2] = slope * across;
 }
 
+/* Add what bumps add to height and slope, where lanes are on them. One formula for lanes on one road and on several, so
+ * that contraction does not tell them apart. */
+LANE_FUNCTION void GIC_LANES_NAME(lane_on_bump_, GIC_LANES)(gic_mask on, gic_lane ahead, gic_lane length,
+                                                            gic_lane height, gic_lane out[3])
+{
+    const gic_lane along = LANE_KEPT(on, ahead), wave = GIC_TWO_PI / length;
+    out[0] += LANE_KEPT(on, GIC_R(0.5) * height * (GIC_R(1.0) - LANE_COS(wave * along)));
+    out[1] += LANE_KEPT(on, GIC_R(0.5) * height * wave * LANE_SIN(wave * along));
+}
+
 /* One road of bumps under all lanes, places finite: each bump that any of them may be on. */
 static __attribute__((unused)) void GIC_LANES_NAME(lane_same_bumps_, GIC_LANES)(const gic_road_bumps *bumps, gic_lane x,
                                                                                 gic_lane y, gic_lane out[3])
@@ -180,12 +190,8 @@ static __attribute__((unused)) void GIC_LANES_NAME(lane_same_bumps_, GIC_LANES)(
         const gic_mask on = (gic_mask)(x > bump->x) & (gic_mask)(ahead < bump->length) &
                             (gic_mask)(y >= bump->y_low - GIC_ROAD_EDGE) &
                             (gic_mask)(y <= bump->y_high + GIC_ROAD_EDGE);
-        if (LANE_ANY(on)) {
-            const gic_real wave = GIC_TWO_PI / bump->length;
-            const gic_lane along = LANE_KEPT(on, ahead);
-            out[0] += LANE_KEPT(on, GIC_R(0.5) * bump->height * (GIC_R(1.0) - LANE_COS(wave * along)));
-            out[1] += LANE_KEPT(on, GIC_R(0.5) * bump->height * wave * LANE_SIN(wave * along));
-        }
+        if (LANE_ANY(on))
+            GIC_LANES_NAME(lane_on_bump_, GIC_LANES)(on, ahead, LANE(bump->length), LANE(bump->height), out);
     }
 }
 
@@ -226,11 +232,8 @@ static __attribute__((unused)) void GIC_LANES_NAME(lane_bumps_, GIC_LANES)(const
             length[l] = bump->length;
             height[l] = bump->height;
         }
-        if (found) {
-            const gic_lane along = LANE_KEPT(on, x - start), wave = GIC_TWO_PI / length;
-            out[0] += LANE_KEPT(on, GIC_R(0.5) * height * (GIC_R(1.0) - LANE_COS(wave * along)));
-            out[1] += LANE_KEPT(on, GIC_R(0.5) * height * wave * LANE_SIN(wave * along));
-        }
+        if (found)
+            GIC_LANES_NAME(lane_on_bump_, GIC_LANES)(on, x - start, length, height, out);
     }
 }
 
