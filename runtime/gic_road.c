@@ -62,20 +62,6 @@ void gic_sine_bend(const gic_road *road, int32_t lane, gic_real time, gic_real x
     out[2] = bend * across * across;
 }
 
-/* The first bump that may not have ended before x: the others begin more than the longest one's length before it. */
-static int32_t first_bump(const gic_road_bumps *bumps, gic_real x)
-{
-    int32_t first = 0, behind = bumps->count;
-    while (first < behind) {
-        const int32_t middle = first + (behind - first) / 2;
-        if (bumps->bump[middle].x < x - bumps->longest)
-            first = middle + 1;
-        else
-            behind = middle;
-    }
-    return first;
-}
-
 static int is_on_bump(const gic_bump *bump, gic_real x, gic_real y)
 {
     return !(x - bump->x >= bump->length || y < bump->y_low - GIC_ROAD_EDGE || y > bump->y_high + GIC_ROAD_EDGE);
@@ -87,7 +73,7 @@ void gic_bumps_height(const gic_road *road, int32_t lane, gic_real time, gic_rea
     (void)lane;
     (void)time;
     out[0] = out[1] = out[2] = GIC_R(0.0);
-    for (int32_t i = first_bump(bumps, x); i < bumps->count && !(bumps->bump[i].x >= x); ++i) {
+    for (int32_t i = gic_first_bump(bumps, x); i < bumps->count && !(bumps->bump[i].x >= x); ++i) {
         const gic_bump *bump = &bumps->bump[i];
         if (!is_on_bump(bump, x, y))
             continue;
@@ -104,7 +90,7 @@ void gic_bumps_bend(const gic_road *road, int32_t lane, gic_real time, gic_real 
     (void)time;
     out[0] = out[1] = out[2] = GIC_R(0.0);
     /* of one that begins at x, too */
-    for (int32_t i = first_bump(bumps, x); i < bumps->count && !(bumps->bump[i].x > x); ++i) {
+    for (int32_t i = gic_first_bump(bumps, x); i < bumps->count && !(bumps->bump[i].x > x); ++i) {
         const gic_bump *bump = &bumps->bump[i];
         const gic_real wave = TWO_PI / bump->length;
         if (is_on_bump(bump, x, y))

@@ -72,6 +72,21 @@ typedef struct gic_road_bumps {
 void gic_bumps_height(const gic_road *road, int32_t lane, gic_real time, gic_real x, gic_real y, gic_real out[3]);
 #define gic_bumps_bend GIC_NAME(gic_bumps_bend)
 void gic_bumps_bend(const gic_road *road, int32_t lane, gic_real time, gic_real x, gic_real y, gic_real out[3]);
+/* The first bump that may not have ended before x: the others begin more than the longest one's length before it. For
+ * gic_road.c and gic_road_lanes.h. */
+static inline int32_t gic_first_bump(const gic_road_bumps *bumps, gic_real x)
+{
+    int32_t first = 0, behind = bumps->count;
+    while (first < behind) {
+        const int32_t middle = first + (behind - first) / 2;
+        if (bumps->bump[middle].x < x - bumps->longest)
+            first = middle + 1;
+        else
+            behind = middle;
+    }
+    return first;
+}
+
 /* GIC_ERROR_ARGUMENT if x decreases, a length is not positive or a number is not finite. */
 #define gic_road_bumps_setup GIC_NAME(gic_road_bumps_setup)
 int gic_road_bumps_setup(gic_road_bumps *road);

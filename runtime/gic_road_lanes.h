@@ -56,20 +56,6 @@
     } while (0)
 #define GIC_TWO_PI GIC_R(6.283185307179586476925286766559)
 
-/* The first bump that may not have ended before x: the others begin more than the longest one's length before it. */
-static inline int32_t gic_lane_bump(const gic_road_bumps *bumps, gic_real x)
-{
-    int32_t first = 0, behind = bumps->count;
-    while (first < behind) {
-        const int32_t middle = first + (behind - first) / 2;
-        if (bumps->bump[middle].x < x - bumps->longest)
-            first = middle + 1;
-        else
-            behind = middle;
-    }
-    return first;
-}
-
 /* The piece of a table that x, inside of it or no number, is in, by its first point. */
 static inline int32_t gic_lane_piece(const gic_road_table *table, gic_real x)
 {
@@ -184,7 +170,7 @@ static __attribute__((unused)) void GIC_LANES_NAME(lane_same_bumps_, GIC_LANES)(
         least = x[l] < least ? x[l] : least;
         most = x[l] > most ? x[l] : most;
     }
-    for (i = gic_lane_bump(bumps, least); i < bumps->count && bumps->bump[i].x < most; ++i) {
+    for (i = gic_first_bump(bumps, least); i < bumps->count && bumps->bump[i].x < most; ++i) {
         const gic_bump *const bump = &bumps->bump[i];
         const gic_lane ahead = x - bump->x;
         const gic_mask on = (gic_mask)(x > bump->x) & (gic_mask)(ahead < bump->length) &
@@ -208,7 +194,7 @@ static __attribute__((unused)) void GIC_LANES_NAME(lane_bumps_, GIC_LANES)(const
         return;
     }
     FOR_LANES(l)
-    next[l] = gic_lane_bump(GIC_ROAD_AS(gic_road_bumps, l), x[l]);
+    next[l] = gic_first_bump(GIC_ROAD_AS(gic_road_bumps, l), x[l]);
     while (any) {
         gic_mask on = (gic_mask)(zero > zero);
         gic_lane start = zero, length = LANE(GIC_R(1.0)), height = zero;
